@@ -8,7 +8,7 @@ import numpy as np
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.program.evaluate import Status, evaluate, prepare
-from pne_sym.program.interpret import Interpreter, PoseLayout
+from pne_sym.program.interpret import REST, Interpreter, PoseLayout
 from pne_sym.program.iteration import close_loops
 from pne_sym.review.named import Situation
 from pne_sym.review.samples import length_of, random_parameters
@@ -36,7 +36,7 @@ def situation(bundle: Bundle, seed: int, *, wide: bool = True) -> Situation | No
 def _parameters(bundle: Bundle, rng: np.random.Generator) -> dict[str, Any]:
     """Parameters near their defaults, of every leg on its own."""
     fields = bundle.derivation.parameters.fields
-    rows = {f.name: np.asarray(f.default, dtype=float).reshape(-1, *f.shape) for f in fields}
+    rows = {f.name: np.array(f.default, dtype=float).reshape(-1, *f.shape) for f in fields}
     keys = {f"{name}.{k}.{name}": (name, k) for name, r in rows.items() for k in range(len(r))}
     drawn = random_parameters({key: rows[n][k] for key, (n, k) in keys.items()}, rng)
     for key, (name, k) in keys.items():
@@ -72,7 +72,7 @@ class _Drawn:
         q, converged = close_loops(program, self.prepared, X[None], self.home_q)
         if not converged[0]:
             return None
-        vectors = {"X": X, "V": V, "A": A, "q": q[0]}
+        vectors = {"X": X, "V": V, "A": A, "base": np.asarray(REST, dtype=float), "q": q[0]}
         given = {name: v[None] for name, v in vectors.items()}
         found = evaluate(program, "dynamics", self.prepared, given)
         if found.status[0] != Status.OK:

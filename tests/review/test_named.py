@@ -46,10 +46,10 @@ def test_a_name_is_of_what_it_means_or_says_that_it_is_a_part(name: str) -> None
     for blocks, means in _scopes(of.program):
         for target, equation in _targets(blocks):
             first = means.get(target, ())[:1]
-            if first and re.fullmatch(rf"{first[0].name}(_\d+)?", target):
+            if first and re.fullmatch(rf"(\w+_)?{first[0].name}(_\d+)?", target):
                 assert equation == defined.get(first[0].quantity, equation), target
                 continue
-            part = rf"{quantity[equation]}_t(_\d+)?|inv_\w+|least_\w+|pivot\w*"
+            part = rf"(\w+_)?({quantity[equation]}_t(_\d+)?|inv_\w+|least_\w+|pivot\w*)"
             assert re.fullmatch(part, target), (target, equation)
 
 
