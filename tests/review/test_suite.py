@@ -88,7 +88,7 @@ EDITS: dict[str, tuple[Replaced, str, int]] = {
     "axis flipped": (
         (('axis = "x"', 'axis = "-x"'), ("0.62]", "-0.62]")),
         "leg type rpr, joint 2 (P): axis flipped",
-        55,
+        57,
     ),
     "leg added": (
         (("[home]", LEG), ("    [0.0, 0.62],\n]", "    [0.0, 0.62],\n    [0.0, 0.7],\n]")),
