@@ -17,7 +17,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from importlib.metadata import version
-from itertools import count
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -175,11 +174,11 @@ def same_branch_spec(name: str, seed: int) -> Manipulator:
     Branches are fixed at generation: only such a one is a matter of parameters.
     """
     wanted = derive(catalogue(name)).parameters.branches
-    for attempt in count():
+    for attempt in range(200):
         found = random_spec(name, 1000 * attempt + seed)
         if derive(found).parameters.branches == wanted:
             return found
-    raise AssertionError
+    raise AssertionError(f"no random {name} on the branches of its own home")
 
 
 @cache

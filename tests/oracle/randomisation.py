@@ -147,7 +147,8 @@ class _Sampler:
         if self.space is not Space.POINT:  # there the platform is the output point itself
             arm = max(float(np.linalg.norm(point)), 0.1 * self.size)
             point = self.around(point, 0.25 * self.reach * arm)
-        return Leg(
+        return replace(
+            leg,
             base_point=self.around(leg.base_point, 0.15 * self.reach * self.size),
             base_frame=matrix3(frame),
             joints=tuple(self.joint(leg, index) for index in range(len(leg.joints))),
