@@ -13,7 +13,7 @@ from pne_sym.backends.target import Syntax, Target, TargetError
 _PYTHON = Syntax(
     comments=("#",),
     function=r"def (\w+)\(",
-    ends=r"(?:ok|valid|reached|clear|sums|return|shared|def|for|if)\b|out_|[{}]",
+    ends=r"(?:ok|valid|reached|clear|sums|return|shared|def|for|if)\b|out_\w+ = |[{}]",
 )
 _ARRAYS = Syntax(
     comments=("#",),
@@ -29,7 +29,7 @@ _C = Syntax(
 _MATLAB = Syntax(
     comments=("%",),
     function=r"function (?:[^=(]*= )?(\w+)\(",
-    ends=r"(?:flat_|array_|model\.)|\w+ = (?:sum\(\(|(?:[XVAq]|base)\()"
+    ends=r"(?:flat|array)_\w+ = |model\.|\w+ = (?:sum\(\(|(?:[XVAq]|base)\()"
     r"|(?:singular|invalid|unreachable) =|(?:status|end)\b",
 )
 

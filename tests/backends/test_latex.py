@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from pne_sym import manipulators
 from pne_sym.backends.glyphs import Glyph, visible_width
 from pne_sym.backends.latex import LatexPrinter
 from pne_sym.backends.report.names import printer_for
-from pne_sym.derivation import Derivation, Equation, leg_sums, names_in
+from pne_sym.derivation import Derivation, Equation, full_name, leg_sums, names_in
 from pne_sym.mechanics.derive import derive
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import (
@@ -208,10 +209,12 @@ def test_symbols_are_distinct(manipulator: Manipulator, derivation: Derivation) 
     used = {
         n for e in derivation.equations() for x in (e.lhs, e.rhs, *e.forms) for n in names_in(x)
     }
-    chosen = {name for name, _ in manipulator.symbols}  # may be shared: checked where it is read
+    # those of the specification may be shared: checked where they are read
+    chosen = {full_name(derivation, name) for name, _ in manipulator.symbols}
+    directions = re.compile(rf"({'|'.join(t.name for t in derivation.leg_types)})_unit\d_")
     seen: dict[tuple[str, str], str] = {}
     for name in sorted(used - chosen):
-        if name.startswith("unit"):
+        if directions.match(name):
             continue  # coordinate directions: the same three, whatever they are used for
         key = (str(Glyph.of(printer.symbols[name])), printer.per_leg.get(name, ""))
         assert seen.setdefault(key, name) == name, f"{name} and {seen[key]} are both {key[0]}"

@@ -80,6 +80,7 @@ def interface_text(model: Interface, actuated: tuple[int, ...]) -> str:
         "        int *);",
         "    size_t inputs, outputs;",
         "    array in[ARRAYS], out[ARRAYS];",
+        "    int endless;",
         "} function;",
     ]
     home = json.dumps([0.0] * sizes["NU"]).strip("[]")
@@ -103,7 +104,7 @@ def interface_text(model: Interface, actuated: tuple[int, ...]) -> str:
         outs = ", ".join(_array_text(model, a) for a in f.outputs)
         lines.append(
             f'    {{"{f.name}", one_{f.name}, many_{f.name}, {len(f.inputs)}, {len(f.outputs)}, '
-            f"{{{ins}}}, {{{outs}}}}},"
+            f"{{{ins}}}, {{{outs}}}, {int(f.endless)}}},"
         )
     lines += ["};", "static void find_home(void)", "{"]
     lines += [f"    home_drives[{k}] = {name}_HOME_Q[{q}];" for k, q in enumerate(actuated)]

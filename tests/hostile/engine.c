@@ -142,7 +142,7 @@ static void fault(const function *f, const char *what, int code)
     pthread_mutex_unlock(&lock);
 }
 
-/* NaN in every entry where the status is not OK, finite numbers where it is. */
+/* NaN in every entry where the status is not OK, where it is finite numbers, or what has no end. */
 static void judge_outputs(const function *f, real *const *out, size_t state, int code)
 {
     if (code < 0 || code >= CODES) {
@@ -151,7 +151,7 @@ static void judge_outputs(const function *f, real *const *out, size_t state, int
     for (size_t a = 0; a < f->outputs; ++a) {
         const real *const x = out[a] + state*f->out[a].size;
         for (size_t e = 0; e < f->out[a].size; ++e) {
-            if (code == 0 && !(x[e] - x[e] == 0)) {
+            if (code == 0 && !(x[e] - x[e] == 0) && !(f->endless && x[e] > 0)) {
                 fault(f, "OK, but not finite", code);
             } else if (code != 0 && x[e] == x[e]) {
                 fault(f, "impossible, but not NaN", code);

@@ -29,12 +29,16 @@ class Array:
 
 @dataclass(frozen=True)
 class Function:
-    """A public function, without its prefix; `has_model` tells of the first argument."""
+    """A public function, without its prefix.
+
+    `has_model` tells of the first argument, `endless` of results that may be infinite.
+    """
 
     name: str
     has_model: bool
     inputs: tuple[Array, ...]
     outputs: tuple[Array, ...]
+    endless: bool
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,7 @@ def _function(prefix: str, comment: str, head: str, sizes: dict[str, int]) -> Fu
     has_model = arguments[0] == "model"
     if arguments[has_model:] != [a.name for a in (*inputs, *outputs)]:
         raise ValueError(f"{prefix}_{name}: comment and prototype differ")
-    return Function(name, has_model, inputs, outputs)
+    return Function(name, has_model, inputs, outputs, "infinite where" in comment)
 
 
 def _array(name: str, text: str, sizes: dict[str, int]) -> Array:
