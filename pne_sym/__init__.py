@@ -12,7 +12,7 @@ The pipeline in one line each::
 >>> import pne_sym
 >>> manipulator = pne_sym.load("planar_3rpr")
 >>> derivation = pne_sym.derive(manipulator)
->>> print(derivation.definition("S").title)
+>>> print(derivation.definition("rpr_S").title)
 from the base point to the connection point
 >>> sorted(pne_sym.lower(derivation).functions)[:3]
 ['H', 'M', 'Z']

@@ -107,6 +107,7 @@ class _Values:
         values: Mapping[str, Array],
     ) -> None:
         self.structure, self.state = structure, state
+        self.ids = {e.name: e.id for e in structure.derivation.equations()}
         self.function, self.means, self.values = function, means, values
 
     def of(self, blocks: Iterable[Block]) -> Iterator[Statement]:
@@ -121,13 +122,15 @@ class _Values:
 
     def _named(self, name: str, equation: str, legs: Iterable[int | None]) -> Iterator[Statement]:
         for component in self.means.get(name, ()):
+            # of what else a value is it is that equation which the value would contradict
+            of = self.ids.get(component.quantity, equation)
             for k, leg in enumerate(legs):
                 whole = self._expected(component, leg)
                 value = np.atleast_1d(self.values[name])
                 found = value.reshape(value.shape[0], -1)[min(k, len(value) - 1), 0]
                 yield Statement(
                     self.function,
-                    equation,
+                    of,
                     name,
                     component.name,
                     leg,

@@ -214,9 +214,7 @@ class Runs:
         """The states of a set that at least one of the two versions allows."""
         allowed = np.zeros(STATES, dtype=bool)
         for answer in self.answers:
-            for M in answer.calls[k].get(("M", (), "batch"), ())[:1]:
-                if M.shape[:1] == (STATES,):
-                    allowed |= np.isfinite(M.reshape(STATES, -1)).all(axis=1)
+            allowed |= _allowed(answer, k)
         possible = np.isfinite(self.sets[0][k].values["X"]).all(axis=1)
         return np.flatnonzero(allowed & possible)
 
@@ -225,11 +223,8 @@ class Runs:
         found = []
         for k in range(PARAMETER_SETS if self.comparable else 0):
             old, new = self.sets[0][k], self.sets[1][k]
-            both = [
-                s
-                for s in self.kept[k]
-                if all(np.isfinite(a.calls[k]["M", (), "batch"][0][s]).all() for a in self.answers)
-            ]
+            allowed = [_allowed(answer, k) for answer in self.answers]
+            both = [s for s in self.kept[k] if all(version[s] for version in allowed)]
             for s in both[:_PER_SET]:
                 vectors = [
                     {n: side.values[n][s] for n in ("X", "V", "A", "q")} for side in (old, new)
@@ -257,6 +252,14 @@ class Runs:
             except ExecutionError as error:
                 faults.append(str(error))
         return (None if faults else (found[0], found[1])), faults
+
+
+def _allowed(answer: Answer, k: int) -> Array:
+    """At which states of set k a version has an M; what foreign code answers may be anything."""
+    for M in answer.calls[k].get(("M", (), "batch"), ())[:1]:
+        if M.shape[:1] == (STATES,):
+            return np.asarray(np.isfinite(M.reshape(STATES, -1)).all(axis=1))
+    return np.zeros(STATES, dtype=bool)
 
 
 def _both(answers: Iterable[Answer]) -> tuple[Answer, Answer]:

@@ -157,11 +157,12 @@ def test_a_mistake_outside_the_equations_is_told_as_such() -> None:
     found = compare(version(manipulator), lowered)
     assert not found.equal
     assert not found.origins
-    assert any("outside them" in note for note in found.notes)
     assert found.statement is not None
     assert found.statement.equation == right.derivation.definition("ups_U").id
+    (contradiction,) = found.contradictions
+    assert (contradiction.version, contradiction.equation) == ("after", found.statement.equation)
     assert diff_text.verdict(found).startswith(
-        f"different: the lowering, first at {found.statement.equation} (ups_U"
+        f"different: the lowering, first at {found.statement.equation} ({contradiction.target}"
     )
 
 

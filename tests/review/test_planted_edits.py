@@ -223,7 +223,7 @@ def test_c_can_be_left_out_which_is_said(tmp_path: Path) -> None:
 def test_a_statement_of_the_code_is_placed_at_its_equation(tmp_path: Path) -> None:
     """A planted fault of the lowering in a folder, of which nothing is run."""
     before, after = pair(tmp_path, MODEL)
-    ids = re.findall(r"^ +# \((rpr-N\d+)\)", texts(MODEL)["planar_3rpr.py"], re.MULTILINE)
+    ids = re.findall(r"^ +# \((rpr-\w+)\)", texts(MODEL)["planar_3rpr.py"], re.MULTILINE)
     wanted = ids[len(ids) // 2]
     edit(after / "planar_3rpr.py", substituted(rf"(# \({wanted}\).*\n.* = )", r"\1-"))
     done = diff(before, after)
