@@ -109,7 +109,7 @@ def test_derived_with_closed_inverse_kinematics(name: str) -> None:
 
 
 @pytest.mark.only_in_all
-@pytest.mark.parametrize("name", [name for name in ROBOTS if name not in OVERCONSTRAINED])
+@pytest.mark.parametrize("name", ROBOTS)
 def test_generated(name: str) -> None:
     """Regular at home; H is what kinematics at home says; forward dynamics undoes inverse."""
     m = robot(name)
