@@ -27,6 +27,8 @@ from pne_sym.model.manipulator import Home, Joint, Leg, Manipulator, Matrix3, Sp
 
 _POSES = 2
 """Poses beside home, and with each other geometry."""
+_LEAST = 0.05
+"""A part of `_SHIFT` or `_TURN` that counts as a motion."""
 _TURN, _SHIFT = 0.4, 0.15
 """How far a pose is from home: rad, and lengths as a fraction of the mechanism's size."""
 _CHANGE = 0.12
@@ -208,10 +210,6 @@ def check_dependence(m: Manipulator) -> None:
                 "it: what moves there moves at home only",
                 "legs whose constraints are independent, or dependent wherever the platform is",
             )
-
-
-_LEAST = 0.05
-"""A part of `_SHIFT` or `_TURN` that counts as a motion."""
 
 
 def _way(m: Manipulator, moved: Manipulator) -> float:

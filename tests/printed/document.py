@@ -6,7 +6,6 @@ import re
 from dataclasses import dataclass, field
 
 _ID = re.compile(r'<a id="([^"]+)"></a>\*\*\(\1\)\*\* (.*)')
-_LEGS = re.compile(r"Legs? ([\d, to]+), of type .*; index \$`(.+?)`\$ in sums")
 _OF_LEG = re.compile(r" of an? (\S+( \d+)?) leg$")
 Row = tuple[str, ...]
 

@@ -120,6 +120,9 @@ def test_the_same_in_c(name: str, tmp_path: Path) -> None:
     wanted = m.Z(X, V, base=bases)
     np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-11 * np.nanmax(np.abs(wanted)))
     np.testing.assert_array_equal(status, [0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0])
+    (found,), status = library.batch("Z", X, V, None)  # at rest: side by side, and one by one
+    np.testing.assert_allclose(found, m.Z(X, V), rtol=0, atol=1e-11 * np.abs(found).max())
+    np.testing.assert_array_equal(status, 0)
     assert [i.name for i in library.api["inverse_dynamics"].inputs][-1] == "base"
 
 
