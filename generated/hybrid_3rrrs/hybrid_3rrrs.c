@@ -219,26 +219,6 @@ INLINE const real *optional_side_by_side(size_t size, const real *x, real none, 
     return x ? side_by_side(size, x, lanes, total) : lanes;
 }
 
-/* Motion of the base, or NULL: at rest, its axes those of the world. */
-INLINE const real *motion_of_base(const real *x, real *own, real *flags)
-{
-    for (size_t e = 0; e < 18 && !x; ++e) {
-        own[e] = R(e < 9 && e%4 == 0);
-    }
-    if (x) {
-        check(18, 1, x, flags);
-    }
-    return x ? x : own;
-}
-
-INLINE const real *motion_of_base_side_by_side(const real *x, real *lanes, real *total)
-{
-    for (size_t i = 0; i < 18*LANES && !x; ++i) {
-        lanes[i] = R(i/LANES < 9 && i/LANES%4 == 0);
-    }
-    return x ? side_by_side(18, x, lanes, total) : lanes;
-}
-
 /* Flag the states of an input, NULL or given state by state, with entries that are not positive. */
 INLINE void require_positive(size_t size, size_t w, const real *x, real *flags)
 {
