@@ -14,7 +14,6 @@ from pne_sym.backends.c_model import (
     prepare_body,
 )
 from pne_sym.backends.c_public import Caller, c_functions
-from pne_sym.backends.c_solve import Order
 from pne_sym.backends.c_steps import OPERATIONS, Steps, biggest, results_of, runs_in_lanes
 from pne_sym.backends.c_support import needed
 from pne_sym.backends.c_text import Routine, wrapped
@@ -189,7 +188,7 @@ def _steps(
     """Texts of the public functions' steps, and the routines that run them: one state, lanes."""
     texts: list[str] = []
     routines: dict[str, tuple[Routine, Routine | None]] = {}
-    eliminations: dict[Order, Routine] = {}
+    eliminations: dict[int, Routine] = {}
     for function in bundle.program.public:
         if not any(o.value.size for o in function.outputs):
             continue

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_text import Routine, in_pairs, indented, statement
+from pne_sym.backends.c_text import Routine, in_pairs, indented, listing, statement
 from pne_sym.program.evaluate import Status, prepare
 from pne_sym.program.interpret import Interpreter, PoseLayout
 from pne_sym.program.public import Apply, Argument, PublicFunction
@@ -42,6 +42,14 @@ class Order:
 
     rows: tuple[int, ...]
     sizes: tuple[int, ...]
+
+    def tables(self, name: str) -> list[str]:
+        """Declarations of the rows `order_NAME` and the sizes `sizes_NAME`."""
+        rows, sizes = (", ".join(map(str, v)) for v in (self.rows, (4.0**s for s in self.sizes)))
+        return [
+            *listing(f"static const size_t order_{name}[] = {{", [rows], "};"),
+            *listing(f"static const real sizes_{name}[] = {{", [sizes], "};"),
+        ]
 
 
 def order_at_home(bundle: Bundle, function: PublicFunction, solve: Apply) -> Order | None:
@@ -86,39 +94,34 @@ def _order(matrix: Array) -> Order | None:
     return Order(tuple(rows), sizes) if max(map(abs, sizes)) <= _FOURS else None
 
 
-def elimination(name: str, order: Order) -> Routine:
-    """A routine that solves a x = b in w states side by side, and tells where it is not sure.
+def elimination(n: int) -> Routine:
+    """A routine that solves n equations a x = b in w states side by side, and tells where in doubt.
 
     What is not finite shows in the total, to which the solutions are added.
 
-    Row i of a begins at a[i*stride*w].  Two pivots are found at a time, the second without waiting
-    for the first: what takes longest is that each needs the one before.
+    Row i of a begins at a[i*stride*w]; `order` tells which row comes when, `sizes` how large these
+    rows are.  Two pivots are found at a time, the second without waiting for the first: what takes
+    longest is that each needs the one before.
     """
-    n = len(order.rows)
-    lines = _loads(order)
+    lines = []
+    for i in range(n):
+        lines += [f"real a{i}{j} = a[(order[{i}]*stride + {j})*w + k];" for j in range(n)]
+        lines.append(f"real b{i} = b[order[{i}]*w + k];")
     for p in range(0, n, 2):
         lines += _pivots(p, n)
     for p in reversed(range(n)):
         terms = [f"b{p}", *(f"a{p}{j}*x{j}" for j in reversed(range(p + 2, n)))]
+        known = f"({' - '.join(terms)})" if len(terms) > 1 else terms[0]
         last = f" - a{p}{p + 1}*f{p}*x{p + 1}" if p + 1 < n else ""
-        lines += statement(f"const real x{p} = ({' - '.join(terms)})*f{p}{last}")
+        lines += statement(f"const real x{p} = {known}*f{p}{last}")
     lines += [f"x[{p}*w + k] = x{p};" for p in range(n)]
     lines += statement(f"total[k] += {in_pairs([f'x{p}' for p in range(n)])}")
-    lines += _doubts(order)
-    parameters = ("size_t w", "size_t stride", *(f"const real *{v}" for v in "ab"),
+    lines += _doubts(n)
+    parameters = ("size_t w", "size_t stride", "const size_t *order", "const real *sizes",
+                  *(f"const real *{v}" for v in "ab"),
                   *(f"real *{v}" for v in ("x", "unsure", "total")))  # fmt: skip
     body = ("for (size_t k = 0; k < w; ++k) {", *indented(lines), "}")
-    return Routine(name, parameters, body)
-
-
-def _loads(order: Order) -> list[str]:
-    """The rows in their order."""
-    n, lines = len(order.rows), []
-    for i, row in enumerate(order.rows):
-        at = f"{row}*stride + " if row else ""
-        lines += [f"real a{i}{j} = a[({at}{j})*w + k];" for j in range(n)]
-        lines.append(f"real b{i} = b[{row}*w + k];")
-    return lines
+    return Routine(f"eliminate_{n}", parameters, body)
 
 
 def _pivots(p: int, n: int) -> list[str]:
@@ -141,23 +144,20 @@ def _pivots(p: int, n: int) -> list[str]:
     return lines
 
 
-def _doubts(order: Order) -> list[str]:
+def _doubts(n: int) -> list[str]:
     """Multiples and inverse pivots too large, by the size of rows; a pivot that is no number."""
-    n = len(order.rows)
-    groups: dict[float, list[str]] = {}
-    for p in range(n):
-        groups.setdefault(_limit(1 / SMALLEST, -order.sizes[p]), []).append(f"f{p}")
-        for i in range(p + 1, n):
-            limit = _limit(GROWTH, order.sizes[i] - order.sizes[p])
-            groups.setdefault(limit, []).append(f"g{i}{p}")
-    lines, conditions = [], []
-    for number, (limit, values) in enumerate(sorted(groups.items())):
-        sizes = [f"magnitude({v})" for v in values]
-        lines += statement(f"const real most{number} = {_largest(sizes)}")
-        conditions.append(f"UNLESS(most{number} <= R({limit:.12g}))")
+    lines = []
+    for p in range(n - 1):
+        multiples = [f"magnitude(g{i}{p})*(sizes[{p}]/sizes[{i}])" for i in range(p + 1, n)]
+        lines += statement(f"const real most{p} = {_largest(multiples)}")
+    inverse = _largest([f"magnitude(f{p})*sizes[{p}]" for p in range(n)])
     pivots = " + ".join(f"d{p}" if p % 2 else f"a{p}{p}" for p in range(n))
-    conditions.append(f"UNLESS(is_finite({pivots}))")
-    return [*lines, *statement(f"unsure[k] += {' + '.join(conditions)}")]
+    limits = [(inverse, 1 / SMALLEST)]
+    if n > 1:
+        limits.append((_largest([f"most{p}" for p in range(n - 1)]), GROWTH))
+    conditions = [f"{value} <= R({limit:g})" for value, limit in limits]
+    conditions.append(f"is_finite({pivots})")
+    return [*lines, *(x for c in conditions for x in statement(f"unsure[k] += UNLESS({c})"))]
 
 
 def _largest(values: list[str]) -> str:
@@ -166,7 +166,3 @@ def _largest(values: list[str]) -> str:
     if not half:
         return values[0]
     return f"larger({_largest(values[:half])}, {_largest(values[half:])})"
-
-
-def _limit(value: float, fours: int) -> float:
-    return value * 4.0**fours

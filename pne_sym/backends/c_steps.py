@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_solve import Order, elimination, order_at_home
+from pne_sym.backends.c_solve import elimination, order_at_home
 from pne_sym.backends.c_text import WIDTH, Routine, indented, listing, statement
 from pne_sym.backends.scalar import wrap
 from pne_sym.backends.templating import render
@@ -115,7 +115,7 @@ class Steps:
         function: what is printed.
         runs: routines that run the functions of the program, by name.
         parts: routines of the functions that it searches with, by name.
-        eliminations: routines that solve small systems, by order; new ones are added.
+        eliminations: routines that solve small systems, by size; new ones are added.
         lanes: for states side by side.
     """
 
@@ -125,7 +125,7 @@ class Steps:
         function: PublicFunction,
         runs: Mapping[str, Routine],
         parts: Mapping[str, Routine],
-        eliminations: dict[Order, Routine],
+        eliminations: dict[int, Routine],
         *,
         lanes: bool,
     ) -> None:
@@ -343,14 +343,17 @@ class Steps:
         if order is None:
             self._needs_work(step)
             return careful
-        if order not in self.eliminations:
-            self.eliminations[order] = elimination(f"eliminate_{len(self.eliminations)}", order)
-            self.before.append("\n".join(self.eliminations[order].definition()))
+        straight = self.eliminations.get(len(order.rows)) or elimination(len(order.rows))
+        if len(order.rows) not in self.eliminations:
+            self.eliminations[len(order.rows)] = straight
+            self.before.append("\n".join(straight.definition()))
+        solved = step.targets[0].name
+        self.tables += order.tables(solved)
         names = {v: str(fields[v]) for v in "abx"}
+        names |= {"order": f"order_{solved}", "sizes": f"sizes_{solved}"}
         stride = f"stride_of({fields['m']}, {self.w})" if filled else str(fields["m"])
         names |= {"w": self.w, "stride": stride, "unsure": "why.singular", "total": "why.total"}
         self.summed.add(step.targets[0].name)
-        straight = self.eliminations[order]
         if self.lanes:
             if filled:
                 self._needs_work(step)

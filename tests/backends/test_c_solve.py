@@ -28,12 +28,16 @@ def solve(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     files = CBackend().emit(bundle)
     head = files["planar_3rpr.c"].split("/* ---- parameters ---- */")[0]
     (folder / "planar_3rpr.h").write_text(files["planar_3rpr.h"])
-    routine = elimination("eliminate", ORDER)
+    routine = elimination(4)
     declared = "const real *a, const real *b, real *x, real *unsure, real *total"
     text = [
         *routine.definition(),
         f"void solve({declared});",
-        f"void solve({declared}) {{ eliminate(1, 4, a, b, x, unsure, total); }}",
+        *ORDER.tables("x"),
+        f"void solve({declared})",
+        "{",
+        "    eliminate_4(1, 4, order_x, sizes_x, a, b, x, unsure, total);",
+        "}",
     ]
     source, made = folder / "solve.c", folder / "solve.so"
     source.write_text("\n".join((head, *text)))
