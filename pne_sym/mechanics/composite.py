@@ -30,7 +30,7 @@ from pne_sym.vector import (
 
 
 class Inertial(Protocol):
-    """A link with inertia: see `leg_dynamics.LinkBody`."""
+    """A link with inertia: see `links.LinkBody`."""
 
     @property
     def joint(self) -> int:

@@ -27,9 +27,11 @@ from pne_sym.mechanics.constraints import axis_across, force_vanishes
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
 from pne_sym.mechanics.joint_forces import write_joint_forces
 from pne_sym.mechanics.joint_limits import write_margins
-from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
+from pne_sym.mechanics.leg_dynamics import DynamicsWriter
 from pne_sym.mechanics.leg_geometry import LegGeometry, build_geometry
 from pne_sym.mechanics.leg_motion import MotionWriter
+from pne_sym.mechanics.link_forces import LinkWriter
+from pne_sym.mechanics.links import introduce_bodies
 from pne_sym.mechanics.mobility import check_solvable, mobility
 from pne_sym.mechanics.moving_base import introduce_base
 from pne_sym.mechanics.notation import with_symbols
@@ -163,7 +165,8 @@ def _derive_leg(
     )
     forces = write_joint_forces(book, g, motion, kinematics.q, kinematics.end_turning)
     book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", text, prefix)
-    dynamics = DynamicsWriter(book, g, platform, motion, kinematics, bodies, forces).run()
+    links = LinkWriter(book, g, platform.gravity, motion, kinematics, bodies)
+    dynamics = DynamicsWriter(links, forces).run()
     leg = Leg(g, motion, dynamics)
     _joint_outputs(book, manipulator, leg, inverse)
     if not inverse.is_closed:
@@ -355,7 +358,7 @@ def _motors(book: Book, manipulator: Manipulator, legs: list[Leg]) -> None:
 
     An actuated joint without data of its motor is driven directly.
     """
-    if not any(leg.dynamics.forces.motor for leg in legs):
+    if not any(leg.dynamics.forces.motors for leg in legs):
         return
     order = [
         (i, j)
@@ -364,7 +367,7 @@ def _motors(book: Book, manipulator: Manipulator, legs: list[Leg]) -> None:
         if joint.actuated
     ]
     for leg in legs:
-        indices, motor = leg.g.leg_type.indices, leg.dynamics.forces.motor
+        indices, motor = leg.g.leg_type.indices, leg.dynamics.forces.motors
         for j, joint in enumerate(leg.g.leg_type.model.joints, 1):
             if joint.actuated:
                 rows = tuple(order.index((i, j)) for i in indices)
@@ -394,7 +397,7 @@ def _potential(
     kinematics: list[MotionWriter],
 ) -> None:
     """Potential energy, zero at the base origin."""
-    sprung = any(leg.dynamics.forces.stored for leg in legs)
+    sprung = any(leg.dynamics.forces.potential != 0 for leg in legs)
     text = "Weight times height, zero at the base origin" + ", and the energy of springs" * sprung
     book.chapter("V", "Potential energy", f"{text}.")
     total: Any = -Dot(platform.weight, writer.mass * platform.t + writer.moment)

@@ -139,7 +139,6 @@ class BlockWriter:
     def _leg(self, leg: Leg) -> None:
         """Force and moment of a leg by Eq. 4, its connection point moving with the platform."""
         d, a_p = leg.dynamics, leg.motion.a_p
-        assert d.form is not None
         given = next((e for e in self.book.all_equations() if e.lhs == a_p), None)
         point = given.rhs if given is not None else a_p
         force = replace(d.form, remainder=-d.U)

@@ -17,7 +17,7 @@ import sympy as sp
 
 from pne_sym.derivation import Book, Law, Quantity, Role
 from pne_sym.model.joint_kinds import JointKind
-from pne_sym.vector import VectorSymbol, ZeroVector
+from pne_sym.vector import TensorSymbol, VectorSymbol, ZeroVector
 
 _MARKS = "#%&"
 Collect = Callable[..., Any]
@@ -168,6 +168,14 @@ class Writer:
     def give(self, stem: str, frame: str, components: Iterable[Any], *numbers: Any) -> VectorSymbol:
         """Introduce a vector with its components, fixed in a frame; returns its symbol."""
         symbol = VectorSymbol(self._name(stem, numbers))
+        self.book.give(symbol, frame, tuple(components), self._quantity(stem, frame, numbers))
+        return symbol
+
+    def give_tensor(
+        self, stem: str, frame: str, components: Iterable[Any], *numbers: Any
+    ) -> TensorSymbol:
+        """The same of a symmetric tensor."""
+        symbol = TensorSymbol(self._name(stem, numbers), symmetric=True)
         self.book.give(symbol, frame, tuple(components), self._quantity(stem, frame, numbers))
         return symbol
 

@@ -1,0 +1,238 @@
+"""Inertia and weight of a leg's links, by Newton's and Euler's equations.
+
+Reference: section 2.5, steps 1.2 and 1.3, Eqs. 1 and 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.derivation import Book
+from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.leg_motion import MotionWriter
+from pne_sym.mechanics.linear_writer import LegMotion, LinearWriter
+from pne_sym.mechanics.links import LinkBody
+from pne_sym.mechanics.terms import Writer, glossary
+from pne_sym.vector import (
+    Axial,
+    Compose,
+    Cross,
+    Dot,
+    Identity,
+    TensorSymbol,
+    Vector,
+    VectorSymbol,
+    ZeroVector,
+    tensor_sum,
+    vector_sum,
+)
+
+_TERMS = glossary(r"""
+phi_#     | \mathbf f^{\omega}_{#} ; \boldsymbol\Phi_{#}   | NEWTON | Eq. 1
+    inertia force of link # from its turning about its reference point
+acc_#     | \mathbf a_{#} ; \boldsymbol\Theta_{#}          | RATE | Eqs. 10, 11, 17, 18
+    acceleration of the reference point of link #, less gravity
+f_#       | \mathbf f_{#} ; \boldsymbol\Upsilon_{#}        | NEWTON | Eq. 1
+    inertia force of link # less its weight
+mu_#      | \boldsymbol\mu_{#} ; \boldsymbol\Psi_{#}       | EULER | Eq. 2
+    inertia moment of the links that turn with link #, about their reference points
+J_group_# | \mathbf J^\Sigma_{#}  | LUMPING constant symmetric
+    inertia of the links that turn with link #, each about its reference point
+Sigma_#   | \boldsymbol\Sigma_{#} | LUMPING constant symmetric
+    second moment of mass of the links that turn with link #
+h_group_# | \mathbf h^\Sigma_{#}  | LUMPING constant
+    first moments of the links that turn with link #
+unit%_#   | \mathbf{i}_{&}        | given
+    coordinate direction
+trace_J_# | j_{#}                 | LUMPING constant
+    half the trace of that inertia tensor
+""")
+
+
+@dataclass(frozen=True)
+class LinkForces:
+    """What accelerating and holding up the links takes, by joint number.
+
+    Attributes:
+        acceleration: of the links' reference points, less gravity.
+        force: on each link but one whose reference point is the connection point.
+        at_tip: that link.
+        turning: force on it from its turning about the connection point.
+    """
+
+    acceleration: dict[int, Any]
+    force: dict[int, Any]
+    at_tip: LinkBody | None
+    turning: Any
+
+    @property
+    def tip_mass(self) -> Any:
+        """Mass gathered at the connection point."""
+        return self.at_tip.mass if self.at_tip else sp.S.Zero
+
+    @property
+    def tip_force(self) -> Any:
+        """Inertia less weight of that mass."""
+        tip = self.at_tip
+        return tip.mass * self.acceleration[tip.joint] if tip else ZeroVector
+
+    @property
+    def tip_moment(self) -> Any:
+        """Its moment about the connection point."""
+        tip = self.at_tip
+        return Cross(tip.first_moment, self.acceleration[tip.joint]) if tip else ZeroVector
+
+
+class LinkWriter:
+    """Writes the forces and moments of a leg's links."""
+
+    def __init__(
+        self,
+        book: Book,
+        g: LegGeometry,
+        gravity: Vector,
+        motion: LegMotion,
+        kinematics: MotionWriter,
+        bodies: Sequence[LinkBody],
+    ) -> None:
+        self.book, self.g, self.gravity, self.motion = book, g, gravity, motion
+        self.k, self.bodies = kinematics, bodies
+        self.eq = Writer(book, g, _TERMS, LinearWriter(book, g, motion.collection).define)
+
+    def forces(self) -> LinkForces:
+        """Inertia force of every link less its weight."""
+        force: dict[int, Any] = {}
+        acceleration: dict[int, Any] = {}
+        at_tip, turning_at_tip = None, ZeroVector
+        for body in self.bodies:
+            j, frame = body.joint, self.g.frame("axes", body.group)
+            acceleration[j] = self._acceleration(body)
+            turning = self._turning(body)
+            if body.at_tip:
+                at_tip, turning_at_tip = body, turning
+                continue
+            total, collected = body.mass * acceleration[j] + turning, not self.g.composite
+            force[j] = self.eq.collected("f_#", total, j, body=frame, collected=collected)
+        return LinkForces(acceleration, force, at_tip, turning_at_tip)
+
+    def _turning(self, body: LinkBody) -> Any:
+        """The part of a link's inertia force that comes from its turning."""
+        motion, h = self.motion, body.first_moment
+        omega, alpha = motion.omega[body.group], motion.alpha[body.group]
+        if omega == ZeroVector:
+            return ZeroVector
+        tensor, at_rest = motion.acceleration_tensor[body.group]
+        return self.eq.collected(
+            "phi_#",
+            Cross(alpha, h) + Cross(omega, Cross(omega, h)),
+            body.joint,
+            body=self.g.frame("axes", body.group),
+            forms=(tensor @ h,),
+            rest_forms=(at_rest @ h,),
+            collected=body.at_tip or not self.g.composite,
+        )
+
+    def _acceleration(self, body: LinkBody) -> Any:
+        """Acceleration of the reference point less gravity."""
+        g, j, forms = self.g, body.joint, {}
+        if body.at_tip:
+            value = self.motion.S_ddot
+        else:
+            slides = [i for i in range(1, j + 1) if g.group[i] == body.group and g.slides(i)]
+            value, form, rest = self.k.point_acceleration(body.group, self.k.reach(j), slides)
+            forms = {"forms": (form - self.gravity,), "rest_forms": (rest - self.gravity,)}
+        frame, collected = g.frame("axes", body.group), body.at_tip or not g.composite
+        relative = value - self.gravity
+        return self.eq.collected("acc_#", relative, j, body=frame, collected=collected, **forms)
+
+    # ---- moments ---------------------------------------------------------------------
+
+    def group_moment(self, group: int, acceleration: dict[int, Any]) -> Any:
+        """Moment of inertia of a group's links about their own reference points (Euler)."""
+        motion = self.motion
+        members = [b for b in self.bodies if b.group == group]
+        if not members or group == 0:
+            return ZeroVector
+        J, second = self._group_inertia(group, members)
+        omega, alpha = motion.omega[group], motion.alpha[group]
+        both = [(acceleration[b.joint], self._rest(acceleration[b.joint])) for b in members]
+        moments, at_rest = (
+            [Cross(b.first_moment, a[k]) for b, a in zip(members, both, strict=True)]
+            for k in (0, 1)
+        )
+        ways = [(moments, at_rest), *self._gathered_moments(members, acceleration)]
+        turning, turning_rest = (
+            Axial(Compose(tensor, second)) for tensor in motion.acceleration_tensor[group]
+        )
+        return self.eq.collected(
+            "mu_#",
+            vector_sum((J @ alpha, Cross(omega, J @ omega), *moments)),
+            group,
+            body=self.g.frame("axes", group),
+            forms=tuple(vector_sum((turning, *terms)) for terms, _ in ways),
+            rest_forms=tuple(vector_sum((turning_rest, *terms)) for _, terms in ways),
+            collected=not self.g.composite,
+        )
+
+    def _group_inertia(self, group: int, members: Sequence[LinkBody]) -> tuple[Any, Any]:
+        """Inertia tensor J of a group's links, each about its reference point; tr(J)/2 E - J."""
+        frame = self.g.frame("axes", group)
+        J = tensor_sum(b.inertia for b in members)
+        if not isinstance(J, TensorSymbol):
+            J = self.eq("J_group_#", J, group, body=frame)
+        second = self._half_trace(J, group) * Identity - J
+        return J, self.eq("Sigma_#", second, group, body=frame)
+
+    def _half_trace(self, J: Any, group: int) -> Any:
+        """Half the trace of the group's inertia."""
+        quantity = self.book.notation[J.name]
+        axes = []
+        for k in range(3):
+            components = [sp.Integer(int(i == k)) for i in range(3)]
+            frame = quantity.body or "base"
+            axes.append(self.eq.give("unit%_#", frame, components, group, k, k + 1))
+        trace = sp.Add(*(Dot(a, J @ a) for a in axes))
+        latex = quantity.latex.replace(r"\mathbf J", "j")
+        return self.eq("trace_J_#", trace / 2, group, latex=latex)
+
+    def _gathered_moments(
+        self, members: Sequence[LinkBody], acceleration: dict[int, Any]
+    ) -> list[tuple[list[Any], list[Any]]]:
+        """The moments h x (a - g) with gravity taken out once: (terms, terms at rest), or none."""
+        if len(members) < 2:
+            return []
+        without: dict[int, tuple[Any, Any]] = {}
+        for b in members:
+            found = self._without_gravity(acceleration[b.joint])
+            if found is None:
+                return []
+            without[b.joint] = found
+        group = members[0].group
+        sum_of_moments, frame = vector_sum(b.first_moment for b in members), self.g.frame
+        total = self.eq("h_group_#", sum_of_moments, group, body=frame("axes", group))
+        weight = -Cross(total, self.gravity)
+        terms, at_rest = (
+            [weight, *(Cross(b.first_moment, without[b.joint][k]) for b in members)] for k in (0, 1)
+        )
+        return [(terms, at_rest)]
+
+    def _without_gravity(self, relative: Any) -> tuple[Any, Any] | None:
+        """Acceleration and its remainder, where the relative one is a named difference."""
+        if relative == -self.gravity:
+            return ZeroVector, ZeroVector
+        equation = next((e for e in self.book.all_equations() if e.lhs == relative), None)
+        if equation is None:
+            return None
+        if equation.rhs == -self.gravity:
+            return ZeroVector, ZeroVector
+        terms = [t for t in getattr(equation.rhs, "args", ()) if t != -self.gravity]
+        plain = vector_sum(terms) if len(terms) == 1 else None
+        return (plain, self._rest(plain)) if isinstance(plain, VectorSymbol) else None
+
+    def _rest(self, symbol: Any) -> Any:
+        """Remainder of a quantity at zero acceleration."""
+        return self.motion.collection.rest(symbol)
