@@ -1,7 +1,7 @@
-"""Newton-Euler of a leg, from the most distal link to the base, along the freedoms only.
+"""Newton-Euler of a leg, from the most distal link to the base, along the degrees of freedom only.
 
 The inertia force f_u of the last link and the leg's force F on the platform act
-at the same point, so the equilibrium of the distal links along the freedom of
+at the same point, so the equilibrium of the distal links along the degree of freedom of
 joint j reads v_j . (F + f_u) = tau_j - Gamma_j, where Gamma_j collects the
 moments (revolute), forces (prismatic) or both (helical) of everything but f_u.
 Joint reactions never appear.
@@ -572,7 +572,7 @@ class DynamicsWriter:
             )
 
     def _force_balance(self, gamma: dict[int, Any]) -> Any:
-        """Force at the connection point, from the amounts along the freedoms."""
+        """Force at the connection point, from the coefficients along the degrees of freedom."""
         G: Any = vector_sum(gamma[j] * w for j, w in self.motion.w.items() if gamma[j] != 0)
         if ZeroVector == G:
             return ZeroVector
@@ -581,7 +581,7 @@ class DynamicsWriter:
             G,
             r"\mathbf G",
             "force at the connection point that balances the leg's "
-            "inertia and weight along all freedoms",
+            "inertia and weight along all degrees of freedom",
             Law.RECIPROCITY,
             coefficient_latex=r"\boldsymbol{\mathcal G}",
             body=self.k.tip_frame(),
@@ -589,7 +589,7 @@ class DynamicsWriter:
         )
 
     def _reduced_force(self, result: LegDynamics, phi: Any) -> None:
-        """The leg's force without its drives and the mass at the tip, and its inertia Q."""
+        """The leg's force without its actuators and the mass at the tip, and its inertia Q."""
         frame, a_p = self.k.tip_frame(), self.motion.a_p
         c: Any = ZeroVector
         if self.G + phi != ZeroVector:
@@ -637,32 +637,32 @@ class DynamicsWriter:
             )
 
     def _moment_balance(self, gamma: dict[int, Any]) -> Any:
-        """Moment of the leg, from its amounts along the moment directions."""
-        motion, amounts = self.motion, []
+        """Moment of the leg, from its coefficients along the moment directions."""
+        motion, coefficients = self.motion, []
         for k, n in enumerate(motion.n, 1):
-            amount = sp.Add(*(gamma[j] * m[k - 1] for j, m in motion.m.items()))
-            if amount != 0:
-                amounts.append(
+            coefficient = sp.Add(*(gamma[j] * m[k - 1] for j, m in motion.m.items()))
+            if coefficient != 0:
+                coefficients.append(
                     n
                     * self.write.define(
                         f"G_m{k}",
-                        amount,
+                        coefficient,
                         f"G_{{m{k}}}",
                         f"moment along moment direction {k} that balances the leg's inertia "
-                        "and weight along all freedoms",
+                        "and weight along all degrees of freedom",
                         Law.RECIPROCITY,
                         coefficient_latex=rf"\boldsymbol{{\mathcal G}}_{{m{k}}}",
                         reference="Sec. 2.2, joint table",
                     )
                 )
-        if not amounts:
+        if not coefficients:
             return ZeroVector
         return self.write.define(
             "G_m",
-            vector_sum(amounts),
+            vector_sum(coefficients),
             r"\mathbf G_m",
             "moment at the connection point that balances the leg's inertia and weight along "
-            "all freedoms",
+            "all degrees of freedom",
             Law.RECIPROCITY,
             coefficient_latex=r"\boldsymbol{\mathcal G}_m",
             body=self.k.tip_frame(),
@@ -694,7 +694,7 @@ class DynamicsWriter:
             f"P_{j}",
             row,
             rf"P_{{{j}}}",
-            f"inertia and weight of the leg along the extra freedom of joint {j}",
+            f"inertia and weight of the leg along the extra degree of freedom of joint {j}",
             Law.FREEDOM,
             coefficient_latex=rf"\mathbf M_{{yt,{j}}}",
             reference="Eqs. 6, 7",
