@@ -48,8 +48,8 @@ pne_sym.animate("stewart", "motion.gif", poses)  # X of each frame
 ```
 
 Letters: R revolute, P prismatic, H helical, U universal, S spherical, from the base to the
-platform; driven joints are underlined, `*` marks an extra coordinate. Numbers in circles are the
-legs, in the order of q, tau and the columns of H. Freedoms are counted by rank at home.
+platform; actuated joints are underlined, `*` marks an extra coordinate. Numbers in circles are the
+legs, in the order of q, tau and the columns of H. Degrees of freedom are counted by rank at home.
 
 Operations are those of one evaluation in scalar code: multiplications, additions, divisions and
 roots. *Dynamics*: M, Z and H together. *Inverse dynamics*: both sides of its linear system, which
@@ -106,11 +106,11 @@ def page(entries: Iterable[Entry]) -> str:
 
 
 def _overview(entries: list[Entry]) -> str:
-    head = "freedoms | drives | constraints | extra | section 3 | dynamics | inverse dynamics |"
+    head = "DOF | actuators | constraints | extra | section 3 | dynamics | inverse dynamics |"
     lines = [f"| | {head}", "|---|" + "--:|" * 4 + "---|" + "--:|" * 2]
     for each in entries:
         name, m = each.manipulator.name, each.mobility
-        numbers = f"{m.freedoms} | {m.drives} | {m.constraints} | {m.extra}"
+        numbers = f"{m.dofs} | {m.actuators} | {m.constraints} | {m.extra}"
         counts = f"{each.dynamics} | {each.inverse_dynamics}"
         lines.append(f"| [{name}](#{name}) | {numbers} | {', '.join(m.cases)} | {counts} |")
     return "\n".join([*lines, ""])
@@ -121,8 +121,8 @@ def _section(each: Entry) -> str:
     name = manipulator.name
     rows = [
         ("legs", _legs(manipulator)),
-        ("degrees of freedom", str(m.freedoms)),
-        ("drives", str(m.drives)),
+        ("degrees of freedom", str(m.dofs)),
+        ("actuators", str(m.actuators)),
         ("constraints", str(m.constraints)),
         ("extra coordinates", str(m.extra) + (f", {m.passive} passive" if m.passive else "")),
         ("section 3 of the paper", "<br>".join(f"{case} {CASES[case]}" for case in m.cases)),
@@ -143,7 +143,7 @@ def _operations(count: int, calls: int) -> str:
 
 
 def _legs(manipulator: Manipulator) -> str:
-    """Such as 6 UPS, driven joints underlined."""
+    """Such as 6 UPS, actuated joints underlined."""
     parts = []
     for leg_type in leg_types(manipulator):
         text, driven = "", False

@@ -145,7 +145,7 @@ def targets_of(folder: Path) -> tuple[str, ...]:
 def remarks(compiled: Compiled) -> list[str]:
     """What there is to know of a manipulator: its mobility, and legs without a closed form.
 
-    Warns with `SpecWarning` where the drives do not hold the mechanism.
+    Warns with `SpecWarning` where the actuators do not hold the mechanism.
     """
     from pne_sym.mechanics.mobility import check_mobility
 

@@ -127,7 +127,7 @@ class _Model:
         """Public functions without a solution by structure, at home, or at poses around it."""
         d = describe(self.bundle)
         failed = self._unsolved(d.sizes["NU"])
-        if d.is_underdriven:
+        if d.is_underactuated:
             never = [name for name, states in failed.items() if states.all()]
             yield f"{_listed(never)}: NaN at every state: {_UNDERDRIVEN}"
             failed = {name: states for name, states in failed.items() if name not in never}

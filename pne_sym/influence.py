@@ -72,16 +72,16 @@ def _samples(bundle: Bundle) -> list[tuple[Array, Array, tuple[int, ...], int]]:
         still = np.zeros((1, bundle.coordinates.sizes["NV"]))
         vectors = {"X": X, "V": still, "base": REST[None], "q": q}
         arrays = evaluate(bundle.program, "dynamics", prepared, vectors).outputs
-        drives = [arrays[name][0] for name in ("H", "Hk") if name in arrays]
-        found.append((arrays["M"][0], np.hstack(drives), facts.passive, facts.rank))
+        actuators = [arrays[name][0] for name in ("H", "Hk") if name in arrays]
+        found.append((arrays["M"][0], np.hstack(actuators), facts.passive, facts.rank))
     return found
 
 
-def _influence(M: Array, drives: Array, passive: tuple[int, ...], rank: int) -> int:
+def _influence(M: Array, actuators: Array, passive: tuple[int, ...], rank: int) -> int:
     """Rank of what the idle rows feel of the passive extra coordinates; 0 if not finite."""
-    if not (np.isfinite(M).all() and np.isfinite(drives).all()):
+    if not (np.isfinite(M).all() and np.isfinite(actuators).all()):
         return 0
-    idle = np.linalg.svd(drives)[0][:, rank:].T
+    idle = np.linalg.svd(actuators)[0][:, rank:].T
     columns = M[:, list(passive)]
     sizes = np.linalg.norm(columns, axis=0)
     effect = idle @ columns / np.where(sizes > 0.0, sizes, 1.0)

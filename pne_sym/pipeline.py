@@ -34,7 +34,7 @@ def _lowered(manipulator: Manipulator, derivation: Derivation) -> Bundle:
         program = lower(derivation)
     except SingularPatternError as error:
         raise SpecError(
-            manipulator.name, "legs", str(error), "legs whose freedoms are independent"
+            manipulator.name, "legs", str(error), "legs whose degrees of freedom are independent"
         ) from error
     return Bundle(manipulator, derivation, program)
 

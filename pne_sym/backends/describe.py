@@ -96,10 +96,10 @@ class Described:
     def is_redundant(self) -> bool:
         """Whether the actuators can hold the mechanism in more than one way."""
         found = self.sizes["NU"] + self.sizes["NC"] > self.actuation.rank
-        return found and not self.is_underdriven
+        return found and not self.is_underactuated
 
     @property
-    def is_underdriven(self) -> bool:
+    def is_underactuated(self) -> bool:
         """Whether rows beside those of passive extra coordinates cannot all be held.
 
         Then no forces give any acceleration.

@@ -176,7 +176,7 @@ def list_models(debug: Debug = False) -> None:
 
     Degrees of freedom at home, actuated joints by kind (P prismatic, R revolute, H
     helical), and the legs: count, joints from the base, platform joint. When piped, a line
-    is name, title, freedoms, actuators, legs, with tabs between.
+    is name, title, degrees of freedom, actuators, legs, with tabs between.
     """
     with told(debug=debug):
         rows = [listing.row(model) for model in _find(_catalogue())]

@@ -96,7 +96,7 @@ def draw(  # noqa: PLR0913, PLR0917 - an option each
 ) -> None:
     """Draw a manipulator: a picture at a pose, or an animation of a path.
 
-    Base, joints by their kinds, links, platform and frames, from its own data; driven
+    Base, joints by their kinds, links, platform and frames, from its own data; actuated
     joints stand out. Needs matplotlib: pip install 'pne-sym[draw]'.
     """
     with told(debug=debug):

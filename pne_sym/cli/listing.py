@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
 
-HEAD = ("name", "freedoms", "actuators", "legs", "title")
+HEAD = ("name", "DOF", "actuators", "legs", "title")
 
 
 def row(manipulator: Manipulator) -> tuple[str, ...]:
@@ -18,10 +18,10 @@ def row(manipulator: Manipulator) -> tuple[str, ...]:
 
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
     kinds = Counter(str(joint.kind) for joint in joints if joint.actuated)
-    drives = " + ".join(f"{count} {kind}" for kind, count in kinds.items())
+    actuators = " + ".join(f"{count} {kind}" for kind, count in kinds.items())
     found = mobility(manipulator)
-    freedoms = f"{found.freedoms}" + (f" ({found.passive} passive)" if found.passive else "")
-    return (manipulator.name, freedoms, drives, architecture(manipulator), manipulator.title)
+    dofs = f"{found.dofs}" + (f" ({found.passive} passive)" if found.passive else "")
+    return (manipulator.name, dofs, actuators, architecture(manipulator), manipulator.title)
 
 
 def architecture(manipulator: Manipulator) -> str:
@@ -44,5 +44,5 @@ def aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
 
 def tabbed(rows: Sequence[Sequence[str]]) -> Iterator[str]:
     """The rows for programs: name, title, then the rest, with tabs between."""
-    for name, freedoms, drives, legs, title in rows:
-        yield "\t".join((name, title, freedoms, drives, legs))
+    for name, dofs, actuators, legs, title in rows:
+        yield "\t".join((name, title, dofs, actuators, legs))

@@ -79,8 +79,8 @@ def new(  # noqa: PLR0913, PLR0917 - an option each
             "--legs",
             metavar="LEGS",
             help="The architecture, such as 6-UPS or 2-RPR+1-RRR: count, joints from the base, "
-            "platform joint. _ marks a driven joint (6-U_PS), * an extra coordinate. "
-            "Without marks, drives are chosen.",
+            "platform joint. _ marks an actuated joint (6-U_PS), * an extra coordinate. "
+            "Without marks, actuators are chosen.",
         ),
     ],
     space: Annotated[

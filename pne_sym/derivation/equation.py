@@ -38,7 +38,7 @@ class Law(enum.StrEnum):
     RECIPROCITY = "reciprocal basis"
     NEWTON = "Newton"
     EULER = "Euler"
-    FREEDOM = "component along the joint's freedom"
+    FREEDOM = "component along the joint's axis"
     REDUCTION = "reduction to the connection point"
     RULES = "Rules I and II"
     ASSEMBLY = "equilibrium of the platform"

@@ -23,7 +23,7 @@ from pne_sym.drawing.poses import Configuration, closed, pose_of
 from pne_sym.drawing.scene import Scene, ground_of, scene_of
 from pne_sym.drawing.shapes import Picture
 from pne_sym.drawing.spatial import spatial_picture
-from pne_sym.drawing.style import DRIVEN, EXTRA, JOINT, OUTLINE
+from pne_sym.drawing.style import ACTUATED, EXTRA, JOINT, OUTLINE
 from pne_sym.drawing.view import ELEVATION, best_azimuth, view_from
 from pne_sym.generation import InputError, find
 
@@ -178,7 +178,7 @@ def _legend(manipulator: Manipulator) -> tuple[tuple[str, str, str], ...]:
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
     rows = []
     if any(joint.actuated for joint in joints):
-        rows.append((DRIVEN, OUTLINE, "driven joint"))
+        rows.append((ACTUATED, OUTLINE, "actuated joint"))
     rows.append((JOINT, OUTLINE, "passive joint"))
     if any(joint.extra for joint in joints):
         rows.append(("#ffffff", EXTRA, "extra coordinate"))

@@ -152,11 +152,11 @@ def _joint(part: Part, sizes: Proportions) -> list[Shape]:
     if isinstance(part, Bar):
         return []
     if isinstance(part, Turn):
-        fill, edge, width = joint_colours(driven=any(part.driven), extra=part.extra)
+        fill, edge, width = joint_colours(actuated=any(part.actuated), extra=part.extra)
         point = part.point[:2]
         pin = Shape(disc(point, 0.28 * r, 12), OUTLINE, "")
         return [Shape(disc(point, 1.05 * r), fill, edge, max(width, 0.9)), pin]
-    fill, edge, width = joint_colours(driven=part.driven, extra=part.extra)
+    fill, edge, width = joint_colours(actuated=part.actuated, extra=part.extra)
     axis, end = part.axis[:2], part.end[:2]
     if part.grounded:
         return [

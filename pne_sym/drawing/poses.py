@@ -18,7 +18,7 @@ from pne_sym.model.manipulator import Manipulator, Space, Vector3
 Array = NDArray[np.float64]
 
 CLOSED = 1e-6
-"""Largest gap of a leg (m or rad) with which it is drawn."""
+"""Largest loop-closure residual of a leg (m or rad) with which it is drawn."""
 _FAR, _NEAR = (8, 64), (2, 16, 64)
 """Numbers of stages to try on the way from home, and from the pose before."""
 _ANGLES = ("roll", "pitch", "yaw")
@@ -99,9 +99,10 @@ def closed(
     else:
         way = (at_home(manipulator), _FAR) if start is None else (start, _NEAR)
         found = _along_the_way(loops, goal, *way)
-    if not max(loops.gaps(goal, found)) <= CLOSED:
+    if not max(loops.residuals(goal, found)) <= CLOSED:
         widest = loops.widest(goal, found)
-        message = f"X: legs[{widest.leg}] does not reach it; a gap of {widest.size} is left"
+        left = f"a loop-closure residual of {widest.size} is left"
+        message = f"X: legs[{widest.leg}] does not reach it; {left}"
         raise InputError(message + _constrained(manipulator))
     return Configuration(goal, found)
 
@@ -116,7 +117,7 @@ def _along_the_way(
             stage = _between(loops.space, start.X, goal, float(part))
             found[loops.extra] = stage[loops.size :]
             found = legs_closed(loops, stage, found)
-        if max(loops.gaps(goal, found)) <= CLOSED:
+        if max(loops.residuals(goal, found)) <= CLOSED:
             break
     return found
 

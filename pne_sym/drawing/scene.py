@@ -30,7 +30,7 @@ class Turn:
     Attributes:
         point: where it is.
         axes: unit vectors; one for a revolute joint, two for a universal one, else none.
-        driven: for each axis.
+        actuated: for each axis.
         extra: any of its displacements is a coordinate of its own.
         look: a pin, a cross, a ball or a block.
         massless: the link that its last axis moves has no inertia.
@@ -38,7 +38,7 @@ class Turn:
 
     point: Array
     axes: tuple[Array, ...]
-    driven: tuple[bool, ...]
+    actuated: tuple[bool, ...]
     extra: bool
     look: Look
     massless: bool = False
@@ -52,7 +52,7 @@ class Slide:
         start: its origin, on the preceding link.
         end: the origin of the link that it moves.
         axis: unit vector.
-        driven: it has a drive.
+        actuated: it has an actuator.
         extra: its displacement is a coordinate of its own.
         helical: it is a screw.
         grounded: the preceding link is the base.
@@ -61,7 +61,7 @@ class Slide:
     start: Array
     end: Array
     axis: Array
-    driven: bool
+    actuated: bool
     extra: bool
     helical: bool
     grounded: bool
@@ -216,10 +216,10 @@ def _pair(first: Turn, second: Turn, near: float) -> Turn | None:
         return None
     if abs(float(first.axes[-1] @ second.axes[0])) > SAME:
         return None
-    driven, extra = first.driven + second.driven, first.extra or second.extra
+    actuated, extra = first.actuated + second.actuated, first.extra or second.extra
     axes = first.axes + second.axes
     if first.look is Look.PIN:
-        return Turn(first.point, axes, driven, extra, Look.CROSS, second.massless)
-    if any(driven):
+        return Turn(first.point, axes, actuated, extra, Look.CROSS, second.massless)
+    if any(actuated):
         return None
     return Turn(first.point, (), (False,), extra, Look.BALL, second.massless)

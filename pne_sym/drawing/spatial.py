@@ -97,7 +97,7 @@ class _Leg:
 
     def _turn(self, turn: Turn, index: int) -> list[Solid]:
         r, view = self.sizes.joint, self.view
-        fill, edge, width = joint_colours(driven=any(turn.driven), extra=turn.extra)
+        fill, edge, width = joint_colours(actuated=any(turn.actuated), extra=turn.extra)
         bias = 2.0 * r if index == len(self.leg.parts) - 1 else 0.0
         if turn.look is Look.BALL:
             return [ball(view, turn.point, 1.3 * r, Paint(fill, edge, width), bias)]
@@ -109,8 +109,8 @@ class _Leg:
             paint = Paint(fill, edge, width)
             return [cylinder(view, point - half, point + half, 1.2 * r, paint, 1.5 * r + bias)]
         pins = []
-        for axis, driven in zip(turn.axes, turn.driven, strict=True):
-            colour, edge, width = joint_colours(driven=driven, extra=turn.extra)
+        for axis, actuated in zip(turn.axes, turn.actuated, strict=True):
+            colour, edge, width = joint_colours(actuated=actuated, extra=turn.extra)
             half = 2.1 * r * axis
             paint = Paint(colour, edge, width)
             ends = turn.point - half, turn.point + half
@@ -136,10 +136,10 @@ class _Leg:
         return np.zeros(3)
 
     def _strut(self, slide: Slide) -> list[Solid]:
-        """A tube and the rod in it; the drive is the collar at the tube's mouth."""
+        """A tube and the rod in it; the actuator is the collar at the tube's mouth."""
         r, view = self.sizes.joint, self.view
         mouth = slide.start + _TUBE_PART * (slide.end - slide.start)
-        fill, edge, width = joint_colours(driven=slide.driven, extra=slide.extra)
+        fill, edge, width = joint_colours(actuated=slide.actuated, extra=slide.extra)
         step = slide.axis if float((slide.end - slide.start) @ slide.axis) >= 0.0 else -slide.axis
         collar = cylinder(
             view,
@@ -179,7 +179,7 @@ class _Leg:
         assert isinstance(rail, Slide)
         sense = slide.axis if float((rail.end - rail.start) @ slide.axis) >= 0.0 else -slide.axis
         start, end = rail.start - 2.0 * r * sense, rail.end + 4.0 * r * sense
-        fill, edge, width = joint_colours(driven=slide.driven, extra=slide.extra)
+        fill, edge, width = joint_colours(actuated=slide.actuated, extra=slide.extra)
         rod = self._rod(start + down, end + down, 0.7 * r, BASE)
         if self.crowded:
             half = 3.2 * r * slide.axis

@@ -12,7 +12,7 @@ OUTLINE = "#25313d"
 LINK = "#aebccb"
 TUBE = "#8398ad"
 JOINT = "#f1f4f7"
-DRIVEN = "#f08a24"
+ACTUATED = "#f08a24"
 EXTRA = "#1d9a50"
 BASE = "#d6d0c4"
 PLATFORM = "#5b9bd5"
@@ -61,9 +61,9 @@ def mixed(colour: str, other: str, part: float) -> str:
     return "#" + "".join(f"{round((1 - part) * a + part * b):02x}" for a, b in pairs)
 
 
-def joint_colours(*, driven: bool, extra: bool) -> tuple[str, str, float]:
+def joint_colours(*, actuated: bool, extra: bool) -> tuple[str, str, float]:
     """Fill, edge, and width of the edge of a joint."""
-    fill = DRIVEN if driven else JOINT
+    fill = ACTUATED if actuated else JOINT
     return (fill, EXTRA, MARKED) if extra else (fill, OUTLINE, LINE)
 
 

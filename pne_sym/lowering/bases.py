@@ -1,4 +1,4 @@
-"""Reciprocal bases: what resolves a twist or a wrench along a leg's freedoms."""
+"""Reciprocal bases: what resolves a twist or a wrench along a leg's degrees of freedom."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Bases:
 
     Attributes:
         duals: name of a reciprocal vector -> (basis, its number).
-        amounts: name of a moment part -> (basis, number of the wrench, moment direction).
+        coefficients: name of a moment part -> (basis, number of the wrench, moment direction).
     """
 
     def __init__(
@@ -38,11 +38,11 @@ class Bases:
         self.all = derivation.bases
         complete = [b for b in derivation.bases if len(b.duals) == len(b.vectors)]
         self.duals = {w.name: (basis, k) for basis in complete for k, w in enumerate(basis.duals)}
-        self.amounts = {
-            amount.name: (basis, k, i)
+        self.coefficients = {
+            coefficient.name: (basis, k, i)
             for basis in complete
-            for k, amounts in enumerate(basis.moment_duals)
-            for i, amount in enumerate(amounts)
+            for k, coefficients in enumerate(basis.moment_duals)
+            for i, coefficient in enumerate(coefficients)
         }
         self._named_parts = {
             (e.rhs.args[0].name, e.rhs.args[1]): e.name
@@ -69,9 +69,11 @@ class Bases:
             self._frame[id(basis)] = basis.frames[costs.index(min(costs))]
         return self._frame[id(basis)]
 
-    def resolve(self, basis: ReciprocalBasis, x: Any, amounts: Sequence[Any] = ()) -> list[Atom]:
+    def resolve(
+        self, basis: ReciprocalBasis, x: Any, coefficients: Sequence[Any] = ()
+    ) -> list[Atom]:
         """w_j . x + sum_i m_ji amount_i for all j: sum v_j y_j = x, moment rows on the right."""
-        moments = [self.scalar(a) for a in amounts] or [sp.S.Zero] * len(basis.rows)
+        moments = [self.scalar(a) for a in coefficients] or [sp.S.Zero] * len(basis.rows)
         right = [*self.vector(x, self.frame(basis)), *moments]
         hints = [self._named_parts.get((getattr(w, "name", ""), x), "") for w in basis.duals]
         return solve(self.b, self._system(basis), right, hints)
@@ -79,7 +81,7 @@ class Bases:
     def wrench(self, basis: ReciprocalBasis, weights: Sequence[Any]) -> list[Atom]:
         """sum g_j (w_j; m_j): the solution of v_j . F + sum_i E_ij mu_i = g_j.
 
-        Three components of the force, in the basis's frame, then the moment amounts.
+        Three components of the force, in the basis's frame, then the moment coefficients.
         """
         return solve_transposed(self.b, self._system(basis), [self.scalar(g) for g in weights])
 

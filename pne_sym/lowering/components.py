@@ -512,15 +512,19 @@ class Lowering:
         products: list[tuple[Any, tuple[ReciprocalBasis, int, int]]] = []
         for term in expr.args:
             dual = self.bases.of(term.args[0]) if term.args else None
-            amount = next(
-                (f for f in sp.Mul.make_args(term) if getattr(f, "name", "") in self.bases.amounts),
+            coefficient = next(
+                (
+                    f
+                    for f in sp.Mul.make_args(term)
+                    if getattr(f, "name", "") in self.bases.coefficients
+                ),
                 None,
             )
             if isinstance(term, n.Dot) and dual is not None and dual[0].rows:
                 basis, k = dual
                 twists[id(basis), k] = (basis, [term.args[1], *[sp.S.Zero] * len(basis.rows)])
-            elif amount is not None:
-                products.append((term / amount, self.bases.amounts[amount.name]))
+            elif coefficient is not None:
+                products.append((term / coefficient, self.bases.coefficients[coefficient.name]))
             else:
                 plain.append(term)
         wrenches: dict[tuple[int, int], tuple[ReciprocalBasis, list[Any]]] = {}
@@ -531,8 +535,8 @@ class Lowering:
                 zeros = [sp.S.Zero] * len(basis.duals)
                 wrenches.setdefault((id(basis), i), (basis, zeros))[1][k] += factor
         parts = [self.scalar(term) for term in plain]
-        for (_, k), (basis, (x, *amounts)) in twists.items():
-            parts.append(self.bases.resolve(basis, x, amounts)[k])
+        for (_, k), (basis, (x, *coefficients)) in twists.items():
+            parts.append(self.bases.resolve(basis, x, coefficients)[k])
         for (_, i), (basis, weights) in wrenches.items():
             parts.append(self.bases.wrench(basis, weights)[3 + i])
         return self.b.add(parts, hint, named=bool(hint))

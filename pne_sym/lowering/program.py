@@ -51,7 +51,7 @@ GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
         ("joint_rates", ("qd",)),
         ("joint_accelerations", ("qdd",)),
         ("constraints", ("constraints",)),
-        ("legs", ("leg_force", "drive", "constraint_direction")),
+        ("legs", ("leg_force", "actuator", "constraint_direction")),
     ),
     (("potential", ("potential",)),),
     (("dissipation", ("dissipation",)),),
@@ -65,7 +65,7 @@ def lower(derivation: Derivation) -> Program:
     """Lower a derivation to scalar code.
 
     Raises:
-        SingularPatternError: a leg's freedoms are dependent by structure.
+        SingularPatternError: a leg's degrees of freedom are dependent by structure.
     """
     builder = Builder()
     builder.quantity_of = {e.id: e.name for e in derivation.equations()}
@@ -467,7 +467,7 @@ def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
         "qd": (n["NJ"],),
         "qdd": (n["NJ"],),
         "leg_force": (legs, wide),
-        "drive": (n["NU"], wide),
+        "actuator": (n["NU"], wide),
         "constraint_direction": (n["NC"], wide),
         "potential": (1,),
         **({"dissipation": (1,)} if _is_made(derivation, "dissipation") else {}),

@@ -186,11 +186,11 @@ class Writer:
         return a.apply("extend", self.given("wrench").value, numbers=[self.n["NV"]])
 
     def _forces(
-        self, a: Algorithm, required: Value, drives: list[Value], *, weighted: bool = False
+        self, a: Algorithm, required: Value, actuators: list[Value], *, weighted: bool = False
     ) -> tuple[Value, ...]:
         """tau, and lambda where there are constraints, with H tau + Hk lambda = required."""
         facts = self.c.actuation
-        H, Hk = drives[0], drives[1] if self.constrained else None
+        H, Hk = actuators[0], actuators[1] if self.constrained else None
         if not facts.is_determined:
             none = a.apply("impossible", required, numbers=[self.n["NU"]])
             return (
@@ -235,10 +235,10 @@ class Writer:
     def _attainable(
         self, a: Algorithm, H: Value, Hk: Value | None, f: Value
     ) -> tuple[Value, Value | None, Value]:
-        """Combinations of rows that resolve the drives, and the force nearest to their range."""
+        """Combinations of rows that resolve the actuators, and the force nearest to their range."""
         facts = self.c.actuation
-        drives = a.apply("beside", H, Hk) if Hk else H
-        rows, idle = a.apply_all("resolve", drives, numbers=[facts.rank])
+        actuators = a.apply("beside", H, Hk) if Hk else H
+        rows, idle = a.apply_all("resolve", actuators, numbers=[facts.rank])
         gap = a.apply("negative", a.apply("times", idle, f))
         effect = a.apply("take_columns", idle, numbers=facts.passive)
         change = a.apply("least_norm", effect, gap)
@@ -249,9 +249,9 @@ class Writer:
     def _inverse_dynamics(self) -> PublicFunction:
         a = Algorithm()
         names = ["required", "H", *(["Hk"] if self.constrained else [])]
-        required, *drives = a.run("required", self.program, *names)
+        required, *actuators = a.run("required", self.program, *names)
         needed = a.apply("subtract", required, self._external(a))
-        outputs = self._force_outputs(*self._forces(a, needed, drives, weighted=True))
+        outputs = self._force_outputs(*self._forces(a, needed, actuators, weighted=True))
         return self.function(
             "inverse_dynamics",
             "Actuator forces tau for the acceleration A, by Eq. 3.",
@@ -338,13 +338,13 @@ class Writer:
         unique = facts.idle == len(facts.passive)
         known = a.apply("clear_at", A, numbers=facts.passive) if unique else A
         names = ["M", "Z", "H", *(["Hk"] if self.constrained else [])]
-        M, Z, *drives = a.run("dynamics", self.program, *names)
+        M, Z, *actuators = a.run("dynamics", self.program, *names)
         needed = a.apply("add", a.apply("times", M, known), Z)
         needed = a.apply("subtract", needed, self._external(a))
         columns = a.apply("take_columns", M, numbers=facts.passive)
         own = a.apply("take", columns, numbers=facts.passive)
         if facts.is_coupled:
-            system = a.apply("beside", *drives) if self.constrained else drives[0]
+            system = a.apply("beside", *actuators) if self.constrained else actuators[0]
             _, idle = a.apply_all("resolve", system, numbers=[facts.rank])
             effect, gap = a.apply("product", idle, columns), a.apply("times", idle, needed)
         else:
@@ -361,16 +361,16 @@ class Writer:
     def _leg_reactions(self) -> PublicFunction:
         a = Algorithm()
         names = ["required", "H", *(["Hk"] if self.constrained else [])]
-        required, *drives = a.run("required", self.program, *names)
+        required, *actuators = a.run("required", self.program, *names)
         needed = a.apply("subtract", required, self._external(a))
-        efforts = self._forces(a, needed, drives)
+        efforts = self._forces(a, needed, actuators)
         arrays = self.program.functions["legs"].arrays
         shape = self.program.shapes["leg_force"]
         found = dict(zip(arrays, a.run("legs", self.program, *arrays), strict=True))
         forces = found.get("leg_force")
         assert forces is not None
         legs = {
-            "drive": [leg for leg, _ in self.c.actuators],
+            "actuator": [leg for leg, _ in self.c.actuators],
             "constraint_direction": self.c.constraints,
         }
         for effort, (array, owners) in zip(efforts, legs.items(), strict=False):
@@ -451,7 +451,7 @@ class Writer:
         return [*found, *self._projection()] if self.constrained else found
 
     def _mismatch(self) -> PublicFunction:
-        """By how much actuated joints and constraints miss."""
+        """Residuals of actuated joints and of constraints."""
         a, joints = Algorithm(), [self.c.joints.index(j) for j in self.c.actuators]
         (q,) = a.run("inverse_kinematics", self.program, "q")
         own = a.apply("take", q, numbers=joints)

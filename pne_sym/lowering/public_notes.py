@@ -39,7 +39,8 @@ def _branch(*, guessed: bool) -> str:
 def _inverse_dynamics(c: Coordinates) -> list[str]:
     facts, n = c.actuation, c.sizes
     if not facts.is_determined:
-        return ["Impossible: with fewer actuators than freedoms no forces give any acceleration."]
+        told = "Impossible: with fewer actuators than degrees of freedom"
+        return [f"{told} no forces give any acceleration."]
     found = []
     if n["NU"] + n["NC"] == facts.rank:
         found.append("The weights are not used, as the actuators are not redundant.")
@@ -57,8 +58,8 @@ def _completion(c: Coordinates) -> str:
         return "It is A: there are no passive extra coordinates, whose accelerations would follow."
     if not facts.is_determined:
         return (
-            "Impossible: with fewer actuators than freedoms no accelerations of passive extra "
-            "coordinates will do."
+            "Impossible: with fewer actuators than degrees of freedom no accelerations of passive "
+            "extra coordinates will do."
         )
     holding = "actuators and constraints" if constrained else "actuators"
     if facts.idle == 0:

@@ -46,7 +46,7 @@ class Screws:
     def __post_init__(self) -> None:
         self.used = [i for i, row in enumerate(self.rows) if any(e != 0 for e in row)]
         if len(self.used) != len(self.sizes):
-            raise SingularPatternError("the joints' freedoms are dependent by structure")
+            raise SingularPatternError("the joints' degrees of freedom are dependent by structure")
 
     @cached_property
     def columns(self) -> list[int]:

@@ -19,7 +19,7 @@ import numpy as np
 
 from pne_sym.derivation import Actuation
 from pne_sym.mechanics.mobility import DEPENDENT, Mobility, mobility, motions_at_home
-from pne_sym.model.closure import leg_gap, unreachable
+from pne_sym.model.closure import leg_residual, unreachable
 from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at, rotation_about
 from pne_sym.model.loops import Loops, all_closed
@@ -33,8 +33,8 @@ _TURN, _SHIFT = 0.4, 0.15
 """How far a pose is from home: rad, and lengths as a fraction of the mechanism's size."""
 _CHANGE = 0.12
 """By which fraction lengths are changed in other geometries."""
-_GAP = 1e-9
-"""Largest gap of closed loops, as a fraction of the mechanism's size."""
+_CLOSED = 1e-9
+"""Largest residual of closed loops, as a fraction of the mechanism's size."""
 _ATTEMPTS = 4
 """Steps are halved so often until the loops close."""
 
@@ -84,13 +84,13 @@ def _ranks(m: Manipulator, size: int) -> _Ranks:
     passive = np.array([joint.extra and not joint.actuated for joint in joints], dtype=bool)
     motions, twist = motions_at_home(m), len(TASK_SPACES[m.space].components)
     platform, rates = motions[:twist], motions[twist:]
-    freedoms, held = motions.shape[1], _rank(rates[actuated])
+    dofs, held = motions.shape[1], _rank(rates[actuated])
     return _Ranks(
-        rank=size - freedoms + held,
-        force_rank=held if freedoms == size else _force_rank(m),
-        is_determined=_rank(rates[actuated | passive]) == freedoms,
+        rank=size - dofs + held,
+        force_rank=held if dofs == size else _force_rank(m),
+        is_determined=_rank(rates[actuated | passive]) == dofs,
         # They move alone, the platform and what is actuated at rest.
-        is_coupled=freedoms - _rank(np.vstack([platform, rates[actuated]])) < passive.sum(),
+        is_coupled=dofs - _rank(np.vstack([platform, rates[actuated]])) < passive.sum(),
     )
 
 
@@ -105,7 +105,7 @@ def _force_rank(m: Manipulator) -> int:
     q, extras = np.array(m.home.q), np.cumsum([0, *loops.extra])
     columns = []
     for leg, s in zip(m.legs, loops.slices(), strict=True):
-        _, by_q, by_twist = leg_gap(leg, q[s], pose)
+        _, by_q, by_twist = leg_residual(leg, q[s], pose)
         own = ~loops.extra[s]
         rates = np.zeros((len(leg.joints), len(twist) + int(extras[-1])))
         for j in np.flatnonzero(~own):
@@ -164,14 +164,14 @@ def _closed(m: Manipulator, X: Array, q: Array) -> Manipulator | None:
     """The manipulator with its home at the closure next to these coordinates; None if none."""
     loops = Loops(m.space, m.legs, m.fixed_centre)
     X, q = all_closed(loops, X, q)
-    if not max(loops.gaps(X, q)) < _GAP * max(1.0, _size(m)):
+    if not max(loops.residuals(X, q)) < _CLOSED * max(1.0, _size(m)):
         return None
     X = np.concatenate([X[: loops.size], q[loops.extra]])
     return replace(m, home=Home(tuple(X.tolist()), tuple(q.tolist())))
 
 
 def elsewhere(m: Manipulator, rng: np.random.Generator) -> Manipulator | None:
-    """The same mechanism moved a random way along its freedoms."""
+    """The same mechanism moved a random way along its degrees of freedom."""
     motions, twist = motions_at_home(m), len(TASK_SPACES[m.space].components)
     step = motions @ rng.uniform(-1.0, 1.0, motions.shape[1])
     loops, space = Loops(m.space, m.legs, m.fixed_centre), TASK_SPACES[m.space]
@@ -192,8 +192,8 @@ def check_dependence(m: Manipulator) -> None:
     """Refuse mechanisms with dependent constraints that move at home only.
 
     Raises:
-        SpecError: random motions along the freedoms at home end where loops do not close, or where
-            there are fewer freedoms.
+        SpecError: random motions along the degrees of freedom at home end where loops do not
+            close, or where there are fewer degrees of freedom.
     """
     home, rng = mobility(m), np.random.default_rng(1)
     if not home.overconstrained:
@@ -201,7 +201,7 @@ def check_dependence(m: Manipulator) -> None:
     for _ in range(_POSES):
         found = elsewhere(m, rng)
         moved = found is not None and _way(m, found) > _LEAST
-        if not moved or found is None or mobility(found).freedoms != home.freedoms:
+        if not moved or found is None or mobility(found).dofs != home.dofs:
             raise SpecError(
                 m.name,
                 "legs",

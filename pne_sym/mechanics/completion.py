@@ -1,9 +1,9 @@
-"""Directions that complete a leg's freedoms to a full basis, and the wrenches reciprocal to them.
+"""Directions that complete a leg's degrees of freedom to a basis, and wrenches reciprocal to them.
 
-A leg with fewer freedoms than its platform joint leaves to be determined restricts the platform.
-Auxiliary directions, fixed in the last link, complete its freedoms to a basis; the reciprocal
-wrench of an auxiliary direction does no work along any freedom.  Which directions serve is
-settled at home, where the basis must be well conditioned for every leg of the type.
+A leg with fewer degrees of freedom than its platform joint leaves to be determined restricts the
+platform.  Auxiliary directions, fixed in the last link, complete its degrees of freedom to a basis;
+the reciprocal wrench of an auxiliary direction does no work along any degree of freedom.  Which
+directions serve is settled at home, where the basis must be well conditioned for every leg.
 
 Some of these wrenches may do no work along any motion of the platform: a moment where the
 platform cannot turn, a force through the fixed centre.  They constrain nothing.
@@ -26,7 +26,7 @@ from pne_sym.derivation import Book, Condition, ReciprocalBasis, Trouble
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import moment_directions
 from pne_sym.mechanics.terms import Writer, glossary
-from pne_sym.model.closure import least_norm, leg_gap
+from pne_sym.model.closure import least_norm, leg_residual
 from pne_sym.model.kinematics import (
     TASK_SPACES,
     Array,
@@ -55,7 +55,7 @@ _SAMPLES, _REACH, _NEWTON = 4, 0.3, 12  # other poses of a leg: how many, how fa
 
 
 class Kind(StrEnum):
-    """Kinds of auxiliary directions: twists that need not be freedoms of the leg."""
+    """Kinds of auxiliary directions: twists that need not be degrees of freedom of the leg."""
 
     SLIDE = "slide"
     """Along a coordinate direction of the last link."""
@@ -67,7 +67,7 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Auxiliary:
-    """A direction that completes the freedoms of a leg type.
+    """A direction that completes the degrees of freedom of a leg type.
 
     Attributes:
         kind, number: which direction.
@@ -86,31 +86,31 @@ class _State:
     """A leg and its platform in numbers.
 
     Attributes:
-        freedoms: (3 + k, m) unit columns: velocity of the connection point in the last link's
+        dofs: (3 + k, m) unit columns: velocity of the connection point in the last link's
             axes by the length of the leg's lever arms, angular velocity along the k moment
             directions.
         effect: (nt, 3 + k) of wrenches at the connection point (force times that length, moment)
-            on the platform's freedoms.
-        turns: (3 + k, 3) turns of the last link about the platform origin, as the freedoms.
+            on the platform's degrees of freedom.
+        turns: (3 + k, 3) turns of the last link about the platform origin, as `dofs`.
     """
 
-    freedoms: Array
+    dofs: Array
     effect: Array
     turns: Array
 
     @property
-    def left_out(self) -> Array:
-        """Orthonormal wrenches (3 + k, c) that do no work along the freedoms."""
-        u, values, _ = np.linalg.svd(self.freedoms)
+    def constraints(self) -> Array:
+        """Orthonormal wrenches (3 + k, c) that do no work along the degrees of freedom."""
+        u, values, _ = np.linalg.svd(self.dofs)
         return np.asarray(u[:, int(np.sum(values > _PURE)) :])
 
 
 def completion_of(
     manipulator: Manipulator, g: LegGeometry, *, planar: bool
 ) -> tuple[Auxiliary, ...]:
-    """What completes the freedoms of a leg in space that lacks some."""
-    freedoms = sum(not g.is_extra(j) for j in range(1, g.count + 1))
-    if planar or freedoms == 3 + len(g.pairs):
+    """What completes the degrees of freedom of a leg in space that lacks some."""
+    dofs = sum(not g.is_extra(j) for j in range(1, g.count + 1))
+    if planar or dofs == 3 + len(g.pairs):
         return ()
     return completion_at_home(manipulator, g)
 
@@ -122,7 +122,7 @@ def completion_at_home(manipulator: Manipulator, g: LegGeometry) -> tuple[Auxili
     such as a moment on a platform that cannot turn, is none of the constraints.
     """
     home = [next(leg_states(manipulator, g, row)) for row in range(g.leg_type.count)]
-    missing = home[0].left_out.shape[1]
+    missing = home[0].constraints.shape[1]
     transmitted = len(g.pairs)
     slides = [Auxiliary(Kind.SLIDE, k) for k in range(3)]
     angles = [Auxiliary(Kind.RIGHT_ANGLE, k) for k in range(transmitted)]
@@ -134,7 +134,7 @@ def completion_at_home(manipulator: Manipulator, g: LegGeometry) -> tuple[Auxili
             combinations(turns, missing - idle), combinations([*slides, *angles], idle)
         )
     else:
-        pure = max(_rank(s.left_out) - _rank(s.left_out[:3]) for s in home)
+        pure = max(_rank(s.constraints) - _rank(s.constraints[:3]) for s in home)
         choices = product(combinations(slides, missing - pure), combinations(angles, pure))
     best = 0.0
     chosen: tuple[Auxiliary, ...] = ()
@@ -155,21 +155,21 @@ def _idle(manipulator: Manipulator, g: LegGeometry) -> int:
     counts: list[int] = []
     for row in range(g.leg_type.count):
         for state in leg_states(manipulator, g, row):
-            wrenches = state.left_out
+            wrenches = state.constraints
             counts.append(wrenches.shape[1] - _rank(state.effect @ wrenches))
     return min(counts)
 
 
 def _columns(state: _State, chosen: Sequence[Auxiliary]) -> Array:
-    """Freedoms and auxiliary directions (3 + k, 3 + k)."""
-    units = np.eye(len(state.freedoms))
+    """Degrees of freedom and auxiliary directions (3 + k, 3 + k)."""
+    units = np.eye(len(state.dofs))
     own = {
         Kind.SLIDE: units,
         Kind.RIGHT_ANGLE: units[:, 3:],
         Kind.TURN: state.turns,
     }
     columns = [own[a.kind][:, a.number] for a in chosen]
-    return np.column_stack([*columns, state.freedoms])
+    return np.column_stack([*columns, state.dofs])
 
 
 def _quality(state: _State, chosen: Sequence[Auxiliary]) -> float:
@@ -197,7 +197,7 @@ def leg_states(manipulator: Manipulator, g: LegGeometry, row: int) -> Iterator[_
         yield _state(manipulator, g, row, q, pose)
         for newton in range(_NEWTON):
             pose = pose_at(space, list(X), manipulator.fixed_centre)
-            gap, by_q, by_twist = leg_gap(leg, q, pose)
+            gap, by_q, by_twist = leg_residual(leg, q, pose)
             system = np.hstack([by_twist[:, twist], by_q])
             if newton:
                 step = -least_norm(system, gap)
@@ -236,17 +236,17 @@ def _rank(rows: Array) -> int:
 
 _TERMS = glossary(r"""
 a_c#        | \hat{\mathbf a}_{c#} | given
-    coordinate direction of the last link, to complete the leg's freedoms
+    coordinate direction of the last link, to complete the leg's degrees of freedom
 t_c#        | \mathbf t_{c#}      | GEOMETRY
     velocity of the connection point as it turns about the fixed centre
 f_c#        | \mathbf n'_{c#}     | RECIPROCITY | Eq. 35
-    force part of the wrench that does no work along the leg's freedoms, #
+    force part of constraint wrench #
 m#_c%       | \upsilon'_{c%#}     | RECIPROCITY | Eq. 35
-    moment part # of the wrench that does no work along the leg's freedoms, %
+    moment part # of constraint wrench %
 size_c#     | \psi_{c#}           | GEOMETRY
     size of the %
 n_c#        | \mathbf n_{c#}      | GEOMETRY | Eq. 35
-    unit force that the leg's freedoms leave out
+    unit force of the constraint wrench
 mu#_c%      | \upsilon_{c%#}      | GEOMETRY | Eq. 35
     moment along direction # that goes with it
 mu_c#       | \mathbf o_{c#}      | GEOMETRY | Eq. 35
@@ -255,27 +255,27 @@ mu_c#       | \mathbf o_{c#}      | GEOMETRY | Eq. 35
 
 
 @dataclass(frozen=True)
-class LeftOut:
-    """A wrench that does no work along a leg's freedoms: lambda is its amount.
+class ConstraintWrench:
+    """A wrench that does no work along a leg's degrees of freedom: lambda is its coefficient.
 
     Attributes:
         force: of the leg on the platform at the connection point, per unit lambda.
-        amounts: along the moment directions, per unit lambda.
+        coefficients: along the moment directions, per unit lambda.
         moment: the moment that they make.
         acts: it does work along some motion of the platform.
         of_moment: lambda is a moment, not a force.
     """
 
     force: Vector
-    amounts: tuple[Any, ...] = ()
+    coefficients: tuple[Any, ...] = ()
     moment: Vector = ZeroVector
     acts: bool = True
     of_moment: bool = False
 
 
 @dataclass(frozen=True)
-class Freedoms:
-    """Freedoms of a leg as columns that are to be completed.
+class DegreesOfFreedom:
+    """Degrees of freedom of a leg as columns that are to be completed.
 
     Attributes:
         vectors: velocity of the connection point, per joint that is not extra.
@@ -293,14 +293,14 @@ class Freedoms:
 
 
 def completed_wrenches(
-    book: Book, g: LegGeometry, chosen: Sequence[Auxiliary], freedoms: Freedoms
-) -> list[LeftOut]:
-    """The wrenches reciprocal to a leg's freedoms: of unit force, or pure unit moments."""
-    columns = [_column(book, g, auxiliary, freedoms) for auxiliary in chosen]
-    vectors = [*(vector for vector, _ in columns), *freedoms.vectors]
-    rows = [[*(entries[i] for _, entries in columns), *row] for i, row in enumerate(freedoms.rows)]
+    book: Book, g: LegGeometry, chosen: Sequence[Auxiliary], dofs: DegreesOfFreedom
+) -> list[ConstraintWrench]:
+    """The wrenches reciprocal to a leg's degrees of freedom: of unit force, or unit moments."""
+    columns = [_column(book, g, auxiliary, dofs) for auxiliary in chosen]
+    vectors = [*(vector for vector, _ in columns), *dofs.vectors]
+    rows = [[*(entries[i] for _, entries in columns), *row] for i, row in enumerate(dofs.rows)]
     screws = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
-    writer = _WrenchWriter(book, g, freedoms.directions, freedoms.frame)
+    writer = _WrenchWriter(book, g, dofs.directions, dofs.frame)
     parts = [writer.reciprocal(k, a, screws, len(rows)) for k, a in enumerate(chosen)]
     found = [writer.of_unit_size(k, a, *parts[k]) for k, a in enumerate(chosen)]
     frames = dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1))
@@ -309,10 +309,10 @@ def completed_wrenches(
             g.leg_type.name,
             tuple(vectors),
             tuple(force for force, _ in parts),
-            (*(_column_size(g, a) for a in chosen), *freedoms.scales),
+            (*(_column_size(g, a) for a in chosen), *dofs.scales),
             tuple(frames),
             tuple(tuple(row) for row in rows),
-            tuple(amounts for _, amounts in parts),
+            tuple(coefficients for _, coefficients in parts),
             g.size,
         )
     )
@@ -320,18 +320,18 @@ def completed_wrenches(
 
 
 def _column(
-    book: Book, g: LegGeometry, auxiliary: Auxiliary, freedoms: Freedoms
+    book: Book, g: LegGeometry, auxiliary: Auxiliary, dofs: DegreesOfFreedom
 ) -> tuple[Any, list[Any]]:
     """Velocity of the connection point, and angular velocity along the moment directions."""
     number = auxiliary.number
     if auxiliary.kind is Kind.RIGHT_ANGLE:
-        return ZeroVector, [sp.Integer(int(i == number)) for i in range(len(freedoms.rows))]
-    a = direction(book, g, number, freedoms.frame)
+        return ZeroVector, [sp.Integer(int(i == number)) for i in range(len(dofs.rows))]
+    a = direction(book, g, number, dofs.frame)
     if auxiliary.kind is Kind.SLIDE:
-        return a, [sp.S.Zero for _ in freedoms.rows]
+        return a, [sp.S.Zero for _ in dofs.rows]
     eq = Writer(book, g, _TERMS)
-    velocity = eq("t_c#", Cross(a, g.platform_point), number + 1, body=freedoms.frame)
-    return velocity, [Dot(a, n) for n in freedoms.directions]
+    velocity = eq("t_c#", Cross(a, g.platform_point), number + 1, body=dofs.frame)
+    return velocity, [Dot(a, n) for n in dofs.directions]
 
 
 def _column_size(g: LegGeometry, auxiliary: Auxiliary) -> Any:
@@ -358,39 +358,46 @@ class _WrenchWriter:
     def reciprocal(
         self, k: int, auxiliary: Auxiliary, screws: tuple[Any, Any], transmitted: int
     ) -> tuple[Any, tuple[Any, ...]]:
-        """The reciprocal wrench of auxiliary direction k: force, moment amounts."""
+        """The reciprocal wrench of auxiliary direction k: force, moment coefficients."""
         value = DualVector(sp.Integer(k), *screws)
         force = self.eq("f_c#", value, k + 1, body=self.frame)
         duals = (DualScalar(sp.Integer(k), sp.Integer(i), *screws) for i in range(transmitted))
         return force, tuple(self.eq("m#_c%", dual, i, k + 1) for i, dual in enumerate(duals, 1))
 
     def of_unit_size(
-        self, k: int, auxiliary: Auxiliary, force: Any, amounts: tuple[Any, ...]
-    ) -> LeftOut:
+        self, k: int, auxiliary: Auxiliary, force: Any, coefficients: tuple[Any, ...]
+    ) -> ConstraintWrench:
         """The same wrench for a force, or a moment, of size one."""
         number, acts, of_force = k + 1, auxiliary.acts, auxiliary.of_force
-        size = self._size(number, auxiliary, force, amounts)
+        size = self._size(number, auxiliary, force, coefficients)
         n = self.eq("n_c#", force / size, number, body=self.frame)
         moments = tuple(
-            self.eq("mu#_c%", amount / size, i, number) for i, amount in enumerate(amounts, 1)
+            self.eq("mu#_c%", coefficient / size, i, number)
+            for i, coefficient in enumerate(coefficients, 1)
         )
         if not moments:
-            return LeftOut(n, acts=acts, of_moment=not of_force)
+            return ConstraintWrench(n, acts=acts, of_moment=not of_force)
         total = vector_sum(m * n for m, n in zip(moments, self.directions, strict=True))
         moment = self.eq("mu_c#", total, number, body=self.frame)
-        return LeftOut(n, moments, moment, acts, not of_force)
+        return ConstraintWrench(n, moments, moment, acts, not of_force)
 
-    def _size(self, number: int, auxiliary: Auxiliary, force: Any, amounts: tuple[Any, ...]) -> Any:
+    def _size(
+        self, number: int, auxiliary: Auxiliary, force: Any, coefficients: tuple[Any, ...]
+    ) -> Any:
         """Size of the force, or of the moment: singular where it vanishes."""
         if auxiliary.of_force:
             size, what, slides_unit, turns_unit = norm(force), "force", 0, -1
         else:
-            size, what, slides_unit, turns_unit = _size(amounts), "moment", 1, 0
+            size, what, slides_unit, turns_unit = _size(coefficients), "moment", 1, 0
         power_of_length = slides_unit if auxiliary.kind is Kind.SLIDE else turns_unit
         regular = Condition(Trouble.SINGULAR, size, self.g.size**power_of_length)
         return self.eq("size_c#", size, number, what, conditions=(regular,))
 
 
-def _size(amounts: tuple[Any, ...]) -> Any:
-    """Size of a moment by its amounts along orthonormal directions; a single one keeps its sign."""
-    return amounts[0] if len(amounts) == 1 else sp.sqrt(sp.Add(*(a**2 for a in amounts)))
+def _size(coefficients: tuple[Any, ...]) -> Any:
+    """Size of a moment by its parts along orthonormal directions; a single one keeps its sign."""
+    return (
+        coefficients[0]
+        if len(coefficients) == 1
+        else sp.sqrt(sp.Add(*(a**2 for a in coefficients)))
+    )

@@ -1,7 +1,7 @@
 """Inertia of a leg in the accelerations of its joints, from composite bodies.
 
 All links beyond a joint, frozen together, are one composite body.  Accelerating the joint
-takes the force and the moment of that body, whose components along the freedoms of the
+takes the force and the moment of that body, whose components along the degrees of freedom of the
 joint itself and of those before it are the entries of the leg's inertia matrix.
 """
 

@@ -1,4 +1,4 @@
-"""Directions of the connection point that a leg's freedoms leave out.
+"""Constraint wrenches of a leg that lacks degrees of freedom.
 
 Reference: section 3.7, Eqs. 35 to 37.
 """
@@ -12,7 +12,12 @@ import numpy as np
 import sympy as sp
 
 from pne_sym.derivation import Book, Condition, Trouble
-from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches, direction
+from pne_sym.mechanics.completion import (
+    ConstraintWrench,
+    DegreesOfFreedom,
+    completed_wrenches,
+    direction,
+)
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import moment_directions
 from pne_sym.mechanics.terms import Writer, glossary
@@ -24,25 +29,25 @@ _TERMS = glossary(r"""
 n_plane    | \mathbf n                | given
     normal of the plane
 n_c        | \mathbf n_c              | GEOMETRY | Eq. 35
-    unit vector that the leg's freedoms leave out
+    direction of the constraint force
 n_c1       | \mathbf n_c              | GEOMETRY | Eq. 35
-    unit vector that the leg's freedoms leave out
+    direction of the constraint force
 f_c_part   | \mathbf n'_c             | GEOMETRY
-    force that with the moment does no work along the leg's freedoms
+    force part of the constraint wrench
 f_c_size   | \lVert\mathbf n'_c\rVert | GEOMETRY
     its size
 n_c:force  | \mathbf n_c              | GEOMETRY | Eq. 35
-    unit force that the leg's freedoms leave out
+    unit force of the constraint wrench
 volume_c   | \Delta_c                 | GEOMETRY
     triple product of the velocity vectors
 n_c:moment | \mathbf n_c              | GEOMETRY | Eq. 35
-    force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    force part, zero on the manifold, of the constraint moment
 mu_c       | o_c                      | GEOMETRY | Eq. 35
     moment that goes with it
 """)
 
 
-def directions_left_out(
+def constraint_directions(
     book: Book,
     g: LegGeometry,
     v: Mapping[int, Vector],
@@ -82,16 +87,16 @@ def plane_normal(book: Book, g: LegGeometry) -> Vector:
     return normal
 
 
-def wrenches_left_out(
-    book: Book, g: LegGeometry, v: Mapping[int, Vector], joints: list[int], freedoms: Freedoms
-) -> list[LeftOut]:
+def constraint_wrenches(
+    book: Book, g: LegGeometry, v: Mapping[int, Vector], joints: list[int], dofs: DegreesOfFreedom
+) -> list[ConstraintWrench]:
     """Wrenches that do no work along a leg that transmits moments.
 
     Three joints and one moment have a formula of their own, without auxiliary directions.
     """
-    if len(freedoms.directions) != 1 or len(joints) != 3:
-        return completed_wrenches(book, g, g.completion, freedoms)
-    (n,) = freedoms.directions
+    if len(dofs.directions) != 1 or len(joints) != 3:
+        return completed_wrenches(book, g, g.completion, dofs)
+    (n,) = dofs.directions
     across = [Cross(v[joints[(k + 1) % 3]], v[joints[(k + 2) % 3]]) for k in range(3)]
     parts = [-Dot(g.spin(j), n) * a for j, a in zip(joints, across, strict=True) if g.turns(j)]
     frame = g.frame("axes", g.group[g.count])
@@ -105,19 +110,19 @@ def wrenches_left_out(
     regular = Condition(Trouble.SINGULAR, squared, g.size ** (2 * turning - 2), 2)
     length = eq("f_c_size", norm(direction), conditions=(regular,))
     force = eq("n_c:force", direction / length, body=frame)
-    amount = eq("mu_c", volume / length)
-    return [LeftOut(force, (amount,), amount * n)]
+    coefficient = eq("mu_c", volume / length)
+    return [ConstraintWrench(force, (coefficient,), coefficient * n)]
 
 
 def _per_unit_moment(
     book: Book, g: LegGeometry, force: Vector, volume: Any, turning: int, frame: str, n: Vector
-) -> LeftOut:
+) -> ConstraintWrench:
     """The same wrench per unit moment, for legs whose wrench has no force part at home."""
     eq, regular = Writer(book, g, _TERMS), Condition(Trouble.SINGULAR, volume, g.size**turning)
     scale = eq("volume_c", volume, conditions=(regular,))
     direction: Vector = eq("n_c:moment", force / scale, body=frame)
-    amount = eq("mu_c", sp.S.One)
-    return LeftOut(direction, (amount,), amount * n, of_moment=True)
+    coefficient = eq("mu_c", sp.S.One)
+    return ConstraintWrench(direction, (coefficient,), coefficient * n, of_moment=True)
 
 
 def force_vanishes(manipulator: Manipulator, g: LegGeometry) -> bool:

@@ -104,7 +104,7 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         (index, k, "N m" if wrench.of_moment else "N")
         for leg in legs
         for index in leg.g.leg_type.indices
-        for k, wrench in enumerate(leg.motion.left_out)
+        for k, wrench in enumerate(leg.motion.constraints)
     )
     return Coordinates(
         space=manipulator.space.value,
@@ -159,7 +159,7 @@ def _derive_leg(
     text = (
         _NEWTON_EULER
         + (_CARRIED if carried else _KEPT)
-        + (_RESTRICTED if motion.left_out else "")
+        + (_RESTRICTED if motion.constraints else "")
         + (_COMPOSITE if g.composite else "")
         + (_MOMENTS if g.pairs else "")
     )
@@ -224,12 +224,12 @@ def _inverse_kinematics(
     platform: PlatformMotion,
     g: LegGeometry,
 ) -> InverseKinematics:
-    """Displacements in closed form, or else given; settles how missing freedoms are completed."""
+    """Displacements in closed form, or else given; settles how the basis is completed."""
     S, x = _connection(book, platform, g)
-    freedoms = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
-    constrained = (2 if space.planar else 3) + len(g.pairs) > len(freedoms)
+    dofs = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
+    constrained = (2 if space.planar else 3) + len(g.pairs) > len(dofs)
     flat = constrained and not space.planar and not g.pairs
-    normal = axis_across(g, freedoms) if flat else None
+    normal = axis_across(g, dofs) if flat else None
     before = book.mark()
     inverse = invert(book, g, x, normal, constrained=constrained)
     if not inverse.is_closed:
@@ -455,14 +455,14 @@ _COMPOSITE = (
 )
 _MOMENTS = (
     r" The platform joint of this leg transmits moments along $`\mathbf n_{m1}`$ and on, which do "
-    r"work along the turning joints too: the equilibrium along joint j holds the amounts of these "
+    r"work along the turning joints too: the equilibrium along joint j holds the parts of these "
     r"moments times $`\mathbf e_j\cdot\mathbf n_{mi}`$ besides, and the reciprocal wrenches with "
     r"force parts $`\mathbf w_j`$ and moment parts $`\mathbf o_j`$ solve for force and moment "
     r"together."
 )
 _NEWTON_EULER = (
     r"From the last link to the base; of the equilibrium of the links beyond a joint only the "
-    r"component along the joint's freedom is taken, so that joint reactions never appear. "
+    r"component along the joint's axis is taken, so that joint reactions never appear. "
 )
 _CARRIED = (
     r"The inertia force $`\mathbf f`$ of the last link (its weight taken off) acts at the "
@@ -478,6 +478,6 @@ _KEPT = (
     r"reciprocal vectors solve this: $`\mathbf F=\sum_j\mathbf w_j\,(\tau_j-\Gamma_j)`$."
 )
 _RESTRICTED = (
-    r" Besides, the leg acts on the platform along what its freedoms leave out; by how much is the "
+    r" Besides, the leg exerts a constraint wrench on the platform; its coefficient is the "
     r"multiplier $`\lambda`$, a reaction that only the platform's equations determine."
 )

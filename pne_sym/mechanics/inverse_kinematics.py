@@ -83,8 +83,8 @@ def invert(
         book: the derivation being written; a chapter is open.
         g: geometry of the leg type.
         x: vector from the first joint's origin to the connection point.
-        normal: axis along which the leg's freedoms cannot move the connection point.
-        constrained: the leg has fewer freedoms than the connection point: off the
+        normal: axis along which the leg's degrees of freedom cannot move the connection point.
+        constrained: the leg has fewer degrees of freedom than the connection point: off the
             manifold the nearest closure is taken.
     """
     solver = _Solver(book, g, normal, constrained=constrained)
@@ -494,7 +494,7 @@ class _Solver:
         y = self.eq.named("from_centre_#", x - centre, j)
         along = self.eq.named("px_#:slide", Dot(e, y), j)
         squared = along**2 - Dot(y, y) + Dot(tip, tip)
-        if self.normal is not None:  # only what lies across the direction left out can close
+        if self.normal is not None:  # only what lies across the constraint force can close
             squared = squared + Dot(self.normal, y) ** 2 - Dot(self.normal, tip) ** 2
         real = Condition(Trouble.UNREACHABLE, squared)
         discriminant = self.eq.named("disc_#:slide", squared, j, conditions=(real,))

@@ -1,6 +1,6 @@
 """What acts along the joints of a leg beside inertia and weight: friction, springs, rotors.
 
-They enter the equilibrium along the freedom of joint j, of passive and extra joints too:
+They enter the equilibrium along the degree of freedom of joint j, of passive and extra joints too:
 v_j . (F + f_u) = tau_j - Gamma_j, where Gamma_j holds tau^f_j + tau^s_j + J^r_j qdd_j besides.
 Friction in the platform joint is a moment on the last link, and the opposite on the platform.
 """
@@ -200,7 +200,7 @@ class _Writer:
 
 
 _ALL = (
-    r"What acts along joint j beside the actuator, whether or not the joint is driven: it stands "
+    r"What acts along joint j beside the actuator, whether or not the joint is actuated: it stands "
     r"with $`\Gamma_j`$ on the side of inertia and weight. "
 )
 _FRICTION = (

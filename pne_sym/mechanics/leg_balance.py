@@ -1,4 +1,4 @@
-"""Equilibrium of the links beyond each joint along its freedom, from the tip to the base.
+"""Equilibrium of the links beyond each joint along its degree of freedom, from the tip to the base.
 
 Reference: sections 2.2 and 2.5, step 1.3.
 """
@@ -28,7 +28,7 @@ Gamma_# | \Gamma_{#} ; \boldsymbol\gamma_{#}                | FREEDOM | Sec. 2.2
 
 
 class BalanceWriter:
-    """Writes what inertia, weight and the forces in the joints need along every freedom."""
+    """Writes what inertia, weight and the forces in the joints need along every degree of freedom."""
 
     def __init__(self, links: LinkWriter, found: LinkForces, forces: JointForces) -> None:
         self.book, self.g, self.motion, self.k = links.book, links.g, links.motion, links.k
@@ -88,7 +88,7 @@ class BalanceWriter:
         return self.eq.collected(stem, total, j, body=frame, collected=collected)
 
     def _along(self, j: int, component: Any, inertia: dict[tuple[int, int], Any]) -> Any:
-        """Gamma_j, from the component of inertia and weight along the freedom."""
+        """Gamma_j, from the component of inertia and weight along the degree of freedom."""
         other = self.forces.along(j)
         if component == 0 and other == 0:
             return sp.S.Zero

@@ -1,7 +1,7 @@
-"""Newton-Euler of a leg, from the most distal link to the base, along the freedoms only.
+"""Newton-Euler of a leg, from the most distal link to the base, along the degrees of freedom only.
 
 The inertia force f_u of the last link and the leg's force F on the platform act
-at the same point, so the equilibrium of the distal links along the freedom of
+at the same point, so the equilibrium of the distal links along the degree of freedom of
 joint j reads v_j . (F + f_u) = tau_j - Gamma_j, where Gamma_j collects the
 moments (revolute), forces (prismatic) or both (helical) of everything but f_u.
 Joint reactions never appear.
@@ -29,11 +29,11 @@ from pne_sym.vector import Dot, LinearForm, ZeroTensor, ZeroVector, vector_sum
 
 _TERMS = glossary(r"""
 G      | \mathbf G ; \boldsymbol{\mathcal G} | RECIPROCITY | Sec. 2.3
-    force at the connection point that balances the leg's inertia and weight along all freedoms
+    force at the connection point that balances the leg's inertia and weight along all degrees of freedom
 G_m#   | G_{m#} ; \boldsymbol{\mathcal G}_{m#} | RECIPROCITY | Sec. 2.2, joint table
-    moment along moment direction # that balances the leg's inertia and weight along all freedoms
+    moment along moment direction # that balances the leg's inertia and weight along all degrees of freedom
 G_m    | \mathbf G_m ; \boldsymbol{\mathcal G}_m | RECIPROCITY | Sec. 2.2, joint table
-    moment at the connection point that balances the leg's inertia and weight along all freedoms
+    moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
 c      | \mathbf c ; \boldsymbol{\mathcal C} | REDUCTION | Eq. 3
     leg force on the platform without actuation and without the mass at the connection point
 c_m    | \mathbf c_m ; \boldsymbol{\mathcal C}_m | REDUCTION | Eq. 3
@@ -45,7 +45,7 @@ U      | \mathbf U   | RULES LEG_BIAS | Eq. 4
 c_true | \mathbf c^* | NEWTON | Eq. 3
     leg force on the platform without actuation, the last link's mass included
 P_#    | P_{#} ; \mathbf M_{yt,#} | FREEDOM | Eqs. 6, 7
-    inertia and weight of the leg along the extra freedom of joint #
+    inertia and weight of the leg along the extra degree of freedom of joint #
 """)
 
 
@@ -123,17 +123,17 @@ class DynamicsWriter:
         return self.eq.collected(stem, value, body=self.frame)
 
     def _force_balance(self, gamma: dict[int, Any]) -> Any:
-        """Force at the connection point, from the amounts along the freedoms."""
+        """Force at the connection point, from the coefficients along the degrees of freedom."""
         w = self.motion.w
         return self._named("G", vector_sum(gamma[j] * w[j] for j in w if gamma[j] != 0))
 
     def _moment_balance(self, gamma: dict[int, Any]) -> Any:
-        """Moment of the leg, from its amounts along the moment directions."""
+        """Moment of the leg, from its coefficients along the moment directions."""
         motion, moments = self.motion, []
         for k, n in enumerate(motion.n, 1):
-            amount = sp.Add(*(gamma[j] * m[k - 1] for j, m in motion.m.items()))
-            if amount != 0:
-                moments.append(n * self.eq.collected("G_m#", amount, k))
+            coefficient = sp.Add(*(gamma[j] * m[k - 1] for j, m in motion.m.items()))
+            if coefficient != 0:
+                moments.append(n * self.eq.collected("G_m#", coefficient, k))
         return self._named("G_m", vector_sum(moments))
 
     def _inertia(self, form: LinearForm) -> Any:

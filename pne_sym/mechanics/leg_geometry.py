@@ -129,7 +129,7 @@ class LegGeometry:
         bent_helices: helical joints that turn the connection point about their axes.
         unseen: revolute joints whose axes pass through the connection point.
         pure_moment: the wrench that the leg leaves out is a pure moment at home.
-        completion: directions that complete the freedoms of a leg that lacks some, in space.
+        completion: basis completion of a leg that lacks degrees of freedom, in space.
         composite: the leg's inertia is written in the accelerations of its joints.
         exact_frames: groups whose canonical axes are coordinate directions.
     """

@@ -13,11 +13,11 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, ReciprocalBasis, Role
-from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches
+from pne_sym.mechanics.completion import ConstraintWrench, DegreesOfFreedom, completed_wrenches
 from pne_sym.mechanics.constraints import (
-    directions_left_out,
+    constraint_directions,
+    constraint_wrenches,
     plane_normal,
-    wrenches_left_out,
 )
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
@@ -152,7 +152,7 @@ _WITH_BASE = (
 
 @dataclass(frozen=True)
 class _Screw:
-    """A column of a leg's system: a joint's freedom, or a wrench that the freedoms leave out.
+    """A column of a leg's system: a degree of freedom, or a constraint wrench.
 
     Attributes:
         stem: of the vector reciprocal to it.
@@ -185,9 +185,9 @@ class _Bias:
     beta: dict[int, Vector]
 
 
-def _resolved(screws: LegScrews, j: int, amounts: Sequence[Any]) -> Any:
+def _resolved(screws: LegScrews, j: int, coefficients: Sequence[Any]) -> Any:
     """Part of joint j in what turns along the moment directions."""
-    return sp.Add(*(m * a for m, a in zip(screws.m.get(j, ()), amounts, strict=False)))
+    return sp.Add(*(m * a for m, a in zip(screws.m.get(j, ()), coefficients, strict=False)))
 
 
 class MotionWriter:
@@ -272,8 +272,8 @@ class MotionWriter:
         Where the leg restricts the platform the loop may be open: there the links count alone.
         """
         x = self.x.get(j)
-        freedoms = sum(not self.g.is_extra(i) for i in range(1, self.g.count + 1))
-        if freedoms < (2 if self.space.planar else 3) + len(self.g.pairs):
+        dofs = sum(not self.g.is_extra(i) for i in range(1, self.g.count + 1))
+        if dofs < (2 if self.space.planar else 3) + len(self.g.pairs):
             return ()
         while isinstance(x, VectorSymbol):
             quantity = self.book.notation[x.name]
@@ -317,7 +317,7 @@ class MotionWriter:
         return self.g.frame("axes", self.g.group[self.g.count])
 
     def _basis(self, v: dict[int, Vector], gap: Vector) -> LegScrews:
-        """Reciprocal wrenches; directions that the freedoms leave out complete the basis."""
+        """Reciprocal wrenches; basis completion where degrees of freedom lack."""
         g = self.g
         joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
         vectors: list[Any] = [v[j] for j in joints]
@@ -326,35 +326,37 @@ class MotionWriter:
         rows = [[Dot(g.spin(j), n) for j in joints] for n in directions]
         missing = (2 if self.space.planar else 3) + len(rows) - len(joints)
         frame = self.tip_frame()
-        freedoms = Freedoms(list(vectors), [list(r) for r in rows], list(scales), directions, frame)
-        wrenches = self._left_out(v, joints, missing, freedoms)
+        dofs = DegreesOfFreedom(
+            list(vectors), [list(r) for r in rows], list(scales), directions, frame
+        )
+        wrenches = self._constraint_wrenches(v, joints, missing, dofs)
         for wrench in wrenches:
             vectors.append(wrench.force)
             scales.append(g.size if wrench.of_moment else sp.S.One)
-            for row, amount in zip(rows, wrench.amounts, strict=True):
-                row.append(amount)
+            for row, coefficient in zip(rows, wrench.coefficients, strict=True):
+                row.append(coefficient)
         columns = [
             *(_Screw("w_#", j, g.kind(j).is_angle) for j in joints),
             *(_Screw("wn_#", k) for k in range(1, missing + 1)),
         ]
-        duals, amounts = (
+        duals, coefficients = (
             self._define_wrenches(vectors, rows, columns)
             if rows
             else (self._define_duals(vectors, columns), [])
         )
-        o, named = self._moment_parts(joints, amounts, directions)
-        self._note_basis(vectors, duals, scales, rows, amounts)
-        w, m = (dict(zip(joints, parts, strict=False)) for parts in (duals, amounts))
-        left_out = [wrench for wrench in wrenches if wrench.acts]
-        return LegScrews(v, w, o, m, directions, left_out, gap, named)
+        o, named = self._moment_parts(joints, coefficients, directions)
+        self._note_basis(vectors, duals, scales, rows, coefficients)
+        w, m = (dict(zip(joints, parts, strict=False)) for parts in (duals, coefficients))
+        constraints = [wrench for wrench in wrenches if wrench.acts]
+        return LegScrews(v, w, o, m, directions, constraints, gap, named)
 
     def _moment_parts(
-        self, joints: list[int], amounts: list[list[Any]], directions: list[Any]
+        self, joints: list[int], coefficients: list[list[Any]], directions: list[Any]
     ) -> tuple[dict[int, Vector], dict[Any, Any]]:
         """Moment parts of the reciprocal wrenches by joint, and what has these names."""
         o: dict[int, Vector] = {}
         named: dict[Any, Any] = {}
-        for j, own in zip(joints, amounts, strict=False):
+        for j, own in zip(joints, coefficients, strict=False):
             moment = vector_sum(m * n for m, n in zip(own, directions, strict=True))
             o[j] = named[moment] = self.eq("o_#", moment, j, body=self.tip_frame())
         return o, named
@@ -365,7 +367,7 @@ class MotionWriter:
         duals: list[Any],
         scales: list[Any],
         rows: list[list[Any]],
-        amounts: list[list[Any]],
+        coefficients: list[list[Any]],
     ) -> None:
         """Tell the lowering what is reciprocal to what."""
         g = self.g
@@ -378,7 +380,7 @@ class MotionWriter:
                 tuple(scales),
                 frames,
                 tuple(tuple(row) for row in rows),
-                tuple(tuple(m) for m in amounts),
+                tuple(tuple(m) for m in coefficients),
                 g.size,
             )
         )
@@ -427,19 +429,19 @@ class MotionWriter:
             for k, (v, a, screw) in enumerate(zip(vectors, across, screws, strict=True), 1)
         ]
 
-    def _left_out(
-        self, v: dict[int, Vector], joints: list[int], missing: int, freedoms: Freedoms
-    ) -> list[LeftOut]:
-        """Wrenches that do no work along the leg's freedoms."""
+    def _constraint_wrenches(
+        self, v: dict[int, Vector], joints: list[int], missing: int, dofs: DegreesOfFreedom
+    ) -> list[ConstraintWrench]:
+        """Wrenches that do no work along the leg's degrees of freedom."""
         book, g = self.book, self.g
         if missing == 0:
             return []
         if not all(auxiliary.acts for auxiliary in g.completion):
-            return completed_wrenches(book, g, g.completion, freedoms)
-        if freedoms.directions:
-            return wrenches_left_out(book, g, v, joints, freedoms)
-        normals = directions_left_out(book, g, v, joints, missing, self.space.planar)
-        return [LeftOut(normal) for normal in normals]
+            return completed_wrenches(book, g, g.completion, dofs)
+        if dofs.directions:
+            return constraint_wrenches(book, g, v, joints, dofs)
+        normals = constraint_directions(book, g, v, joints, missing, self.space.planar)
+        return [ConstraintWrench(normal) for normal in normals]
 
     def _rates(self, screws: LegScrews, S_dot: Vector) -> dict[int, Any]:
         """Joint rates."""

@@ -15,7 +15,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Role
-from pne_sym.mechanics.completion import LeftOut
+from pne_sym.mechanics.completion import ConstraintWrench
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.vector import (
     LinearForm,
@@ -35,9 +35,9 @@ class LegScrews:
         v: velocity vectors v_j of the joints at the connection point.
         w: reciprocal vectors w_j (without extra joints).
         o: moment parts of the reciprocal wrenches, where the leg transmits moments.
-        m: the same as amounts along the moment directions.
+        m: the same as coefficients along the moment directions.
         n: moment directions.
-        left_out: wrenches that do no work along the leg's freedoms.
+        constraints: constraint wrenches: they do no work along the leg's degrees of freedom.
         gap: from the connection point as the links reach it to the platform's.
         named: expressions that have a name, for coefficients that come out as such.
     """
@@ -47,7 +47,7 @@ class LegScrews:
     o: dict[int, Vector]
     m: dict[int, list[Any]]
     n: list[Any]
-    left_out: list[LeftOut]
+    constraints: list[ConstraintWrench]
     gap: Any
     named: dict[Any, Any]
 

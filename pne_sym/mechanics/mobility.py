@@ -1,7 +1,7 @@
-"""Mobility at home by screw rank: degrees of freedom, drives, constraints, the case of the paper.
+"""Mobility at home by screw rank: degrees of freedom, actuators, constraints, the paper's case.
 
 All legs' closure conditions are linear in the rates of platform and joints.  The rates that
-satisfy them all are the freedoms of the mechanism; no count of joints (Gruebler) is trusted.
+satisfy them all are its degrees of freedom; no count of joints (Gruebler) is trusted.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from pne_sym.model.closure import leg_gap
+from pne_sym.model.closure import leg_residual
 from pne_sym.model.errors import SpecError, SpecWarning
 from pne_sym.model.kinematics import TASK_SPACES, pose_at
 from pne_sym.model.loops import Loops
@@ -25,11 +25,11 @@ DEPENDENT = 1e-8
 
 CASES: dict[str, str] = {
     "3.1": "ordinary",
-    "3.2": "hybrid: a leg with several drives",
-    "3.3": "static redundancy: more legs than freedoms",
-    "3.4": "redundant actuation: more drives than freedoms",
-    "3.5": "kinematic redundancy: driven joints beyond those the platform needs",
-    "3.6": "passive freedoms: joints that neither drives nor platform determine",
+    "3.2": "hybrid: a leg with several actuators",
+    "3.3": "static redundancy: more legs than degrees of freedom",
+    "3.4": "redundant actuation: more actuators than degrees of freedom",
+    "3.5": "kinematic redundancy: actuated joints beyond those the platform needs",
+    "3.6": "passive degrees of freedom: joints that neither actuators nor platform determine",
     "3.7": "constrained: legs that restrict the platform",
 }
 """The cases of section 3 of the paper, by number."""
@@ -40,32 +40,32 @@ class Mobility:
     """What moves, and what moves it, at home.
 
     Attributes:
-        freedoms: degrees of freedom, by rank.
-        drives: driven joints.
+        dofs: degrees of freedom, by rank.
+        actuators: actuated joints.
         constraints: conditions that the legs put on the platform, multipliers in the equations.
         overconstrained: how many of the constraints follow from the others.
         extra: coordinates beside those of the platform.
-        passive: those of them that are not driven.
-        undriven: freedoms that remain when all drives are held.
-        singular_legs: legs whose own freedoms are dependent.
+        passive: those of them that are not actuated.
+        unheld: degrees of freedom that remain when all actuators are held.
+        singular_legs: legs whose own degrees of freedom are dependent.
         cases: numbers of the sections of the paper that apply, such as "3.1".
     """
 
-    freedoms: int
-    drives: int
+    dofs: int
+    actuators: int
     constraints: int
     overconstrained: int
     extra: int
     passive: int
-    undriven: int
+    unheld: int
     singular_legs: tuple[int, ...]
     cases: tuple[str, ...]
 
     def __str__(self) -> str:
         """One line for people."""
         parts = [
-            _count(self.freedoms, "degree of freedom at home", "degrees of freedom at home"),
-            _count(self.drives, "drive"),
+            _count(self.dofs, "degree of freedom at home", "degrees of freedom at home"),
+            _count(self.actuators, "actuator"),
             _count(self.constraints, "constraint"),
             _count(self.extra, "extra coordinate"),
         ]
@@ -82,10 +82,10 @@ def mobility(manipulator: Manipulator) -> Mobility:
 
     >>> from pne_sym import manipulators
     >>> found = mobility(manipulators.load("tripod_3rps"))
-    >>> found.freedoms, found.drives, found.constraints
+    >>> found.dofs, found.actuators, found.constraints
     (3, 3, 3)
     >>> print(mobility(manipulators.load("stewart")))
-    6 degrees of freedom at home, 6 drives, 0 constraints, 0 extra coordinates; \
+    6 degrees of freedom at home, 6 actuators, 0 constraints, 0 extra coordinates; \
 section 3 of the paper: ordinary (3.1)
     """
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
@@ -93,42 +93,44 @@ section 3 of the paper: ordinary (3.1)
     constraints = sum(by_leg)
     twist = len(TASK_SPACES[manipulator.space].components)
     rates = null_space(closure)
-    freedoms = rates.shape[1]
-    driven = np.array([joint.actuated for joint in joints], dtype=bool)
-    held = _rank(rates[twist:][driven])
+    dofs = rates.shape[1]
+    actuated = np.array([joint.actuated for joint in joints], dtype=bool)
+    held = _rank(rates[twist:][actuated])
     extra = sum(joint.extra for joint in joints)
     passive = sum(joint.extra and not joint.actuated for joint in joints)
     return Mobility(
-        freedoms=freedoms,
-        drives=int(driven.sum()),
+        dofs=dofs,
+        actuators=int(actuated.sum()),
         constraints=constraints,
-        overconstrained=max(0, constraints + freedoms - twist - extra) if not singular else 0,
+        overconstrained=max(0, constraints + dofs - twist - extra) if not singular else 0,
         extra=extra,
         passive=passive,
-        undriven=freedoms - held,
+        unheld=dofs - held,
         singular_legs=singular,
-        cases=_cases(manipulator, freedoms, passive, by_leg),
+        cases=_cases(manipulator, dofs, passive, by_leg),
     )
 
 
 def check_mobility(manipulator: Manipulator) -> Mobility:
-    """Mobility, with a warning where the drives leave freedoms that were not marked passive.
+    """Mobility, with a warning where actuators leave degrees of freedom not marked passive.
 
     Warns with `SpecWarning`, also where constraints follow from others; passive extra coordinates
     are meant to move by themselves.
     """
     found = mobility(manipulator)
-    meant = found.freedoms - found.passive
+    meant = found.dofs - found.passive
     problem = ""
-    if found.drives < meant:
+    if found.actuators < meant:
         problem = (
-            f"fewer drives than freedoms: {found.drives} for {found.freedoms}"
+            f"fewer actuators than degrees of freedom: {found.actuators} for {found.dofs}"
             + (f", of which {found.passive} are passive extra coordinates" if found.passive else "")
             + "; mark more joints actuated = true, or let it move freely"
         )
-    elif found.undriven > found.passive:
-        free = _count(found.undriven - found.passive, "freedom", "freedoms")
-        problem = f"all drives held, the mechanism can move at home ({free}): H is singular there"
+    elif found.unheld > found.passive:
+        free = _count(found.unheld - found.passive, "degree of freedom", "degrees of freedom")
+        problem = (
+            f"all actuators held, the mechanism can move at home ({free}): H is singular there"
+        )
     if found.overconstrained:
         dependent = (
             f"overconstrained: of the {found.constraints} constraints that the legs put on the "
@@ -145,14 +147,14 @@ def check_solvable(manipulator: Manipulator) -> None:
     """Refuse what has no determined dynamics, with the mechanical reason.
 
     Raises:
-        SpecError: no joint is driven; nothing moves.
+        SpecError: no joint is actuated; nothing moves.
     """
     found = mobility(manipulator)
-    if not found.drives:
+    if not found.actuators:
         raise SpecError(
-            manipulator.name, "legs", "no joint is driven", "actuated = true for some joint"
+            manipulator.name, "legs", "no joint is actuated", "actuated = true for some joint"
         )
-    if not found.freedoms:
+    if not found.dofs:
         raise SpecError(
             manipulator.name,
             "legs",
@@ -161,10 +163,10 @@ def check_solvable(manipulator: Manipulator) -> None:
         )
 
 
-def drive_quality(manipulator: Manipulator) -> float:
-    """How well the drives hold the mechanism at home: 0 not at all, 1 at best.
+def actuation_quality(manipulator: Manipulator) -> float:
+    """How well the actuators hold the mechanism at home: 0 not at all, 1 at best.
 
-    The smallest singular value of the drives' rates over all motions of unit size.
+    The smallest singular value of the actuators' rates over all motions of unit size.
     """
     closure, _, _ = _closure(manipulator)
     rates = null_space(closure)
@@ -200,7 +202,7 @@ def _closure(manipulator: Manipulator) -> tuple[Array, tuple[int, ...], tuple[in
     twist, q = TASK_SPACES[m.space].components, np.array(m.home.q)
     rows, constraints, singular = [], [], []
     for index, (leg, s) in enumerate(zip(m.legs, loops.slices(), strict=True)):
-        _, by_q, by_twist = leg_gap(leg, q[s], pose)
+        _, by_q, by_twist = leg_residual(leg, q[s], pose)
         by_twist = by_twist[:, twist]
         own = by_q[:, ~loops.extra[s]]
         rank = _rank(own)
@@ -215,19 +217,19 @@ def _closure(manipulator: Manipulator) -> tuple[Array, tuple[int, ...], tuple[in
 
 
 def _cases(
-    manipulator: Manipulator, freedoms: int, passive: int, constraints: tuple[int, ...]
+    manipulator: Manipulator, dofs: int, passive: int, constraints: tuple[int, ...]
 ) -> tuple[str, ...]:
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
-    drives = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
+    actuators = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
     kinematic = any(joint.extra and joint.actuated for joint in joints)
-    driven = freedoms - passive  # that the drives are to determine
+    actuated = dofs - passive  # that the actuators are to determine
     found = []
-    # A leg without drives that restricts the platform guides it: it is none too many.
-    bearing = sum(drives[k] > 0 or not restricts for k, restricts in enumerate(constraints))
-    if bearing > driven:
+    # A leg without actuators that restricts the platform guides it: it is none too many.
+    bearing = sum(actuators[k] > 0 or not restricts for k, restricts in enumerate(constraints))
+    if bearing > actuated:
         found.append("3.3")
-    if max(drives) > 1:
-        if sum(drives) > driven:
+    if max(actuators) > 1:
+        if sum(actuators) > actuated:
             found.append("3.4")
         elif not kinematic:
             found.append("3.2")

@@ -27,14 +27,14 @@ def orientation_rows(
 
     All, where there are as many as displacements.  Where there are more, those that the auxiliary
     directions of the completion leave: there the model itself is singular where the determinant
-    vanishes.  Without such, the best conditioned ones, if the leg's freedoms span the same
-    directions of its last link at every pose; else none: its singular states do not separate.
+    vanishes.  Without such, the best conditioned ones, if the leg's degrees of freedom span the
+    same directions of its last link at every pose; else none: its singular states do not separate.
 
     Args:
         manipulator: the manipulator.
         g: the leg type.
         planar: conditions are taken in the plane.
-        completed: auxiliary directions complete the leg's freedoms.
+        completed: auxiliary directions complete the leg's degrees of freedom.
     """
     joints = sum(not g.is_extra(j) for j in range(1, g.count + 1))
     rows = tuple(range((2 if planar else 3) + len(g.pairs)))
@@ -43,7 +43,7 @@ def orientation_rows(
     if completed and all(a.kind is not Kind.TURN for a in g.completion):
         taken = {a.number if a.kind is Kind.SLIDE else 3 + a.number for a in g.completion}
         return tuple(k for k in rows if k not in taken)
-    legs = [[s.freedoms for s in leg_states(manipulator, g, k)] for k in range(g.leg_type.count)]
+    legs = [[s.dofs for s in leg_states(manipulator, g, k)] for k in range(g.leg_type.count)]
     if not all(_is_same_span(found) for found in legs):
         return ()
     best, chosen = 0.0, tuple[int, ...]()
@@ -58,7 +58,7 @@ def orientation_signs(
     manipulator: Manipulator, g: LegGeometry, rows: tuple[int, ...]
 ) -> tuple[int, ...]:
     """Sign of the determinant of these rows at home, for every leg of the type."""
-    homes = (next(leg_states(manipulator, g, k)).freedoms for k in range(g.leg_type.count))
+    homes = (next(leg_states(manipulator, g, k)).dofs for k in range(g.leg_type.count))
     return tuple(1 if np.linalg.det(home[list(rows)]) > 0.0 else -1 for home in homes)
 
 

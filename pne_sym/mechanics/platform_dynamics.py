@@ -12,7 +12,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Output
-from pne_sym.mechanics.completion import LeftOut
+from pne_sym.mechanics.completion import ConstraintWrench
 from pne_sym.mechanics.leg_dynamics import LegDynamics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.linear_writer import LegMotion
@@ -87,7 +87,7 @@ class PlatformWriter:
         """Platform inertia with the gathered masses."""
         book, p = self.book, self.p
         gathered = any(leg.dynamics.tip_mass != 0 for leg in self.legs)
-        kept = any(leg.motion.left_out for leg in self.legs)
+        kept = any(leg.motion.constraints for leg in self.legs)
         text = (_LUMPED if gathered else _NOT_LUMPED) + (_KEPT if kept else "")
         text += _CARRIES if p.payload else ""
         book.chapter(
@@ -304,7 +304,7 @@ class PlatformWriter:
         ]
 
     def _columns(self) -> None:
-        """Columns of H: the reciprocal vectors of driven joints, and their moments."""
+        """Columns of H: the reciprocal vectors of actuated joints, and their moments."""
         order = sorted(
             (index, j)
             for leg in self.legs
@@ -326,7 +326,7 @@ class PlatformWriter:
             w: Any = motion.w[j]
             o = motion.o.get(j, ZeroVector)
             self._force_column("H", leg, (w, o), f"H_a_{j}", rf"\mathbf H_{{\alpha,{j}}}", places)
-            self._wrench_rows("drive", leg, (w, o), places)
+            self._wrench_rows("actuator", leg, (w, o), places)
         for k, other, rows in self._extras():
             if k is not leg:
                 continue
@@ -338,7 +338,7 @@ class PlatformWriter:
 
     @staticmethod
     def _work(leg: Leg, j: int, extra: int) -> Any:
-        """Work of reciprocal wrench j along the freedom of an extra joint."""
+        """Work of reciprocal wrench j along the degree of freedom of an extra joint."""
         motion, g = leg.motion, leg.g
         if j not in motion.w:
             return sp.S.Zero
@@ -390,51 +390,55 @@ class PlatformWriter:
             self._leg_vector(array, leg, moment, 3, leg_columns=places)
 
     def _constraint_columns(self) -> None:
-        """Columns of Hk: the directions that legs leave out (Eq. 36)."""
+        """Columns of Hk: the constraint wrenches of the legs (Eq. 36)."""
         order = sorted(
             (index, k)
             for leg in self.legs
             for index in leg.g.leg_type.indices
-            for k in range(len(leg.motion.left_out))
+            for k in range(len(leg.motion.constraints))
         )
         column = {key: c for c, key in enumerate(order)}
         for leg in self.legs:
-            for k, left_out in enumerate(leg.motion.left_out):
+            for k, constraint in enumerate(leg.motion.constraints):
                 places = tuple(column[(i, k)] for i in leg.g.leg_type.indices)
-                wrench = left_out.force, left_out.moment
+                wrench = constraint.force, constraint.moment
                 self._force_column(
                     "Hk", leg, wrench, f"Hk_a_{k + 1}", rf"\mathbf H_{{k\alpha,{k + 1}}}", places
                 )
-                self._constrained_extras(leg, left_out, places)
-                self._constraint(leg, k, left_out, places)
+                self._constrained_extras(leg, constraint, places)
+                self._constraint(leg, k, constraint, places)
 
-    def _constrained_extras(self, leg: Leg, left_out: LeftOut, places: tuple[int, ...]) -> None:
-        """What the constraint does along the extra freedoms of its leg."""
+    def _constrained_extras(
+        self, leg: Leg, constraint: ConstraintWrench, places: tuple[int, ...]
+    ) -> None:
+        """What the constraint does along the extra degrees of freedom of its leg."""
         for other, j, rows in self._extras():
             if other is not leg or leg.g.same_freedom(j)[0]:
                 continue
-            work = Dot(left_out.force, leg.motion.v[j]) + Dot(left_out.moment, leg.g.spin(j))
+            work = Dot(constraint.force, leg.motion.v[j]) + Dot(constraint.moment, leg.g.spin(j))
             if work != 0:
                 self.book.outputs.append(
                     Output("Hk", -work, ((0, 0),), ((0, 0),), leg.name, rows, places)
                 )
 
-    def _constraint(self, leg: Leg, k: int, left_out: LeftOut, places: tuple[int, ...]) -> None:
+    def _constraint(
+        self, leg: Leg, k: int, constraint: ConstraintWrench, places: tuple[int, ...]
+    ) -> None:
         """The constraint, and its second derivative (Eq. 37)."""
         book, g, motion = self.book, leg.g, leg.motion
-        normal = left_out.force
-        # By how much the position is missed, and the right angles of the platform joint.
-        amounts = left_out.amounts
-        angles = [a * Dot(*pair) for a, pair in zip(amounts, g.pairs, strict=True)]
-        miss = Dot(normal, motion.gap) - sp.Add(*angles)
-        turning = sp.Add(*(a * nu for a, nu in zip(amounts, motion.nu, strict=True)))
+        normal = constraint.force
+        # Of the position, and of the right angles of the platform joint.
+        coefficients = constraint.coefficients
+        angles = [a * Dot(*pair) for a, pair in zip(coefficients, g.pairs, strict=True)]
+        residual = Dot(normal, motion.gap) - sp.Add(*angles)
+        turning = sp.Add(*(a * nu for a, nu in zip(coefficients, motion.nu, strict=True)))
         gap = book.define(
             g.name(f"phi_c{k + 1}"),
-            miss,
+            residual,
             rf"\chi_{{{k + 1}}}",
-            "angle by which the leg misses the platform, about a direction left out"
-            if left_out.of_moment
-            else "distance by which the leg misses the platform, along a direction left out",
+            "loop-closure residual about the constraint moment"
+            if constraint.of_moment
+            else "loop-closure residual along the constraint force",
             Law.LOOP_CLOSURE,
             reference="Eq. 37",
         )
@@ -453,7 +457,7 @@ class PlatformWriter:
             reference="Eq. 37",
         )
         self._leg_scalar("constraint_bias", leg, bias, places)
-        self._wrench_rows("constraint_direction", leg, (normal, left_out.moment), places)
+        self._wrench_rows("constraint_direction", leg, (normal, constraint.moment), places)
 
     # ---- placing ---------------------------------------------------------------------
 

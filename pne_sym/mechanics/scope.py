@@ -12,47 +12,48 @@ from pne_sym.model.kinematics import Array, ChainPose, TaskSpace, at_home, chain
 from pne_sym.model.manipulator import Leg, Manipulator, PlatformJoint
 from pne_sym.model.platform_kinds.interface import Direction
 
-_DEPENDENT = 1e-9  # smallest relative singular value of independent freedoms
+_DEPENDENT = 1e-9  # smallest relative singular value of independent degrees of freedom
 
 
 def check_scope(manipulator: Manipulator, leg_type: LegType, space: TaskSpace) -> None:
     """Refuse a leg type that the method does not cover, with the mechanical reason.
 
     Raises:
-        SpecError: more freedoms than the platform joint leaves to be determined and no
-            joint marked extra; freedoms that are dependent at home.
+        SpecError: more degrees of freedom than the platform joint leaves to be determined and no
+            joint marked extra; degrees of freedom that are dependent at home.
     """
     index, leg = leg_type.indices[0], leg_type.model
-    freedoms = [j for j, joint in enumerate(leg.joints) if not joint.extra]
+    dofs = [j for j, joint in enumerate(leg.joints) if not joint.extra]
     moments = 0 if space.planar else leg.platform_joint.kind.moments
     most = (2 if space.planar else 3) + moments
-    if len(freedoms) > most:
+    if len(dofs) > most:
         raise SpecError(
             manipulator.name,
             f"legs[{index}].joints",
-            f"{len(freedoms)} freedoms where the platform joint leaves {most} to be determined",
+            f"{len(dofs)} degrees of freedom where the platform joint leaves {most} to be "
+            "determined",
             f"at most {most} joints, or the surplus ones marked extra = true",
         )
-    _check_independent(manipulator, leg_type, freedoms, planar=space.planar)
+    _check_independent(manipulator, leg_type, dofs, planar=space.planar)
 
 
 def _check_independent(
-    manipulator: Manipulator, leg_type: LegType, freedoms: list[int], *, planar: bool
+    manipulator: Manipulator, leg_type: LegType, dofs: list[int], *, planar: bool
 ) -> None:
-    """Refuse a leg whose freedoms are dependent at home."""
+    """Refuse a leg whose degrees of freedom are dependent at home."""
     pose, displacements = at_home(manipulator)
     length = home_lengths(manipulator, leg_type).arm
     for index in leg_type.indices:
         leg = manipulator.legs[index]
         chain = chain_pose(leg, displacements[index])
-        columns = chain.velocities[:, freedoms] / length
+        columns = chain.velocities[:, dofs] / length
         if planar:
             columns = columns[:2]
         else:
             turning = _turning(leg_type, leg, chain, pose.R)
-            columns = np.vstack([columns, turning[:, freedoms]])
+            columns = np.vstack([columns, turning[:, dofs]])
         sizes = np.linalg.norm(columns, axis=0)
-        if not len(freedoms):
+        if not len(dofs):
             raise SpecError(
                 manipulator.name,
                 f"legs[{index}].joints",
@@ -64,7 +65,7 @@ def _check_independent(
             raise SpecError(
                 manipulator.name,
                 f"legs[{index}]",
-                "the leg is singular at home: its freedoms move the platform joint along "
+                "the leg is singular at home: its degrees of freedom move the platform joint along "
                 "dependent directions",
                 "a home position off the singularity, or the superfluous joint marked extra = true",
             )

@@ -20,7 +20,7 @@ class LegType:
 
     Attributes:
         name: prefix of the names of this type, such as "ups".
-        architecture: such as "UPS", driven joints underlined as _P.
+        architecture: such as "UPS", actuated joints underlined as _P.
         indices: positions of the legs in the manipulator.
         legs: the legs themselves.
         number: of the types of its architecture, from 1.
@@ -85,7 +85,7 @@ def _unused(architecture: str, taken: set[str]) -> str:
 
 
 def architecture_of(leg: Leg) -> str:
-    """Architecture notation: U for a massless cross, driven joints as _P, extra as R*."""
+    """Architecture notation: U for a massless cross, actuated joints as _P, extra as R*."""
     letters: list[str] = []
     joints = leg.joints
     j = 0

@@ -11,14 +11,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pne_sym.model.closure import least_norm, leg_gap, solve
+from pne_sym.model.closure import least_norm, leg_residual, solve
 from pne_sym.model.kinematics import Array, Pose, base_of, chain_pose, pose_at, skew
 from pne_sym.model.limits import margin
 from pne_sym.model.loops import Loops
 from pne_sym.model.manipulator import Leg
 
 GUESSES = 48
-"""First guesses for each freedom of a leg, up to `_MOST`."""
+"""First guesses for each degree of freedom of a leg, up to `_MOST`."""
 _MOST = 256
 _MOST_SOLUTIONS = 32
 _ROUNDS = 40
@@ -31,12 +31,12 @@ def closures(leg: Leg, pose: Pose, given: Array, middle: Array) -> list[Array]:
     """Displacements that close a leg at a pose: every solution, the usual one first.
 
     That is within limits, has its slides out, its elbows outwards, and turns its joints least.
-    Of a leg that cannot be closed, displacements that leave the least gap.
+    Of a leg that cannot be closed, displacements that leave the least residual.
 
     Args:
         leg: the leg.
         pose: of the platform, in the base frame.
-        given: displacements (n,), of which those of extra freedoms hold.
+        given: displacements (n,), of which those of extra degrees of freedom hold.
         middle: from where outwards counts, base frame, m.
     """
     free = np.array([not joint.extra for joint in leg.joints])
@@ -114,27 +114,27 @@ def _guesses(leg: Leg, given: Array, free: Array, size: float) -> Array:
 
 
 def _iterated(leg: Leg, pose: Pose, q: Array, free: Array, size: float) -> Array:
-    """Guesses (k, n) after damped steps, those with the smallest gaps first."""
+    """Guesses (k, n) after damped steps, those with the smallest residuals first."""
     units = _units(leg, size)[free]
     for _ in range(_ROUNDS):
-        gap, by_q = _gaps(leg, pose, q, size)
+        residual, by_q = _residuals(leg, pose, q, size)
         by_q = by_q[:, :, free] * units
         normal = np.swapaxes(by_q, 1, 2) @ by_q
         largest = 1.0 + np.trace(normal, axis1=1, axis2=2)
-        damping = (1e-3 * np.minimum(np.sum(gap**2, axis=1), 1.0) + 1e-13) * largest
+        damping = (1e-3 * np.minimum(np.sum(residual**2, axis=1), 1.0) + 1e-13) * largest
         normal += damping[:, None, None] * np.eye(len(units))
-        step = -np.linalg.solve(normal, np.swapaxes(by_q, 1, 2) @ gap[:, :, None])[:, :, 0]
+        step = -np.linalg.solve(normal, np.swapaxes(by_q, 1, 2) @ residual[:, :, None])[:, :, 0]
         longest = np.abs(step).max(axis=1, initial=_LONGEST_STEP)[:, None]
         q[:, free] += step * (_LONGEST_STEP / longest) * units
-    gap, _ = _gaps(leg, pose, q, size)
-    sizes = np.abs(gap).max(axis=1)
+    residual, _ = _residuals(leg, pose, q, size)
+    sizes = np.abs(residual).max(axis=1)
     order = np.argsort(sizes, kind="stable")
     near = order[sizes[order] <= _NEAR] if sizes[order[0]] <= _NEAR else order[:1]
     return np.asarray(q[near])
 
 
-def _gaps(leg: Leg, pose: Pose, q: Array, size: float) -> tuple[Array, Array]:
-    """Gaps (k, m) at displacements (k, n), lengths over the size, and their Jacobians (k, m, n)."""
+def _residuals(leg: Leg, pose: Pose, q: Array, size: float) -> tuple[Array, Array]:
+    """Residuals (k, m) at displacements (k, n), lengths over the size, and Jacobians (k, m, n)."""
     count = len(q)
     rotation = np.tile(np.array(leg.base_frame), (count, 1, 1))
     point = np.tile(np.array(leg.base_point), (count, 1))
@@ -148,7 +148,7 @@ def _gaps(leg: Leg, pose: Pose, q: Array, size: float) -> tuple[Array, Array]:
             turn = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
             rotation = rotation @ turn
     tip = point + rotation @ np.array(leg.platform_joint.offset)
-    gaps = [(tip - pose.t - pose.R @ np.array(leg.platform_point)) / size]
+    residuals = [(tip - pose.t - pose.R @ np.array(leg.platform_point)) / size]
     spins = [joint.turn * axis for joint, axis in zip(leg.joints, axes, strict=True)]
     moves = [
         (joint.advance * axis + np.cross(spin, tip - origin)) / size
@@ -159,19 +159,19 @@ def _gaps(leg: Leg, pose: Pose, q: Array, size: float) -> tuple[Array, Array]:
         a, b = rotation @ np.array(condition.link), pose.R @ np.array(condition.platform)
         turned = np.stack([np.cross(spin, a) for spin in spins], axis=-1)
         if condition.perpendicular:
-            gaps.append((a @ b)[:, None])
+            residuals.append((a @ b)[:, None])
             rows.append((b @ turned)[:, None, :])
         else:
-            gaps.append(a - b)
+            residuals.append(a - b)
             rows.append(turned)
-    return np.concatenate(gaps, axis=1), np.concatenate(rows, axis=1)
+    return np.concatenate(residuals, axis=1), np.concatenate(rows, axis=1)
 
 
 def _polished(leg: Leg, pose: Pose, guess: Array, free: Array) -> Array:
     """The solution to rounding; angles of hinges within half a turn."""
 
     def step(q: Array) -> Array:
-        gap, by_q, _ = leg_gap(leg, q, pose)
-        return least_norm(by_q * free, -gap)
+        residual, by_q, _ = leg_residual(leg, q, pose)
+        return least_norm(by_q * free, -residual)
 
-    return solve(lambda q: leg_gap(leg, q, pose)[0], step, np.add, guess)
+    return solve(lambda q: leg_residual(leg, q, pose)[0], step, np.add, guess)

@@ -18,15 +18,15 @@ Step = Callable[[Array], Array]
 Move = Callable[[Array, Array], Array]
 
 CLOSED = 1e-12
-"""Gap to which a home is polished, relative to the size where that exceeds 1 m."""
+"""Residual to which a home is polished, relative to the size where that exceeds 1 m."""
 MAX_ITERATIONS = 30
 _HALVINGS = 8
 _LARGEST_STEP = 0.3
 _SINGULAR = 1e-9
 
 
-def leg_gap(leg: Leg, q: Array, pose: Pose) -> tuple[Array, Array, Array]:
-    """How far a leg is from closing, and how the gap changes.
+def leg_residual(leg: Leg, q: Array, pose: Pose) -> tuple[Array, Array, Array]:
+    """How far a leg is from closing, its loop-closure residual, and how it changes.
 
     Args:
         leg: the leg.
@@ -34,12 +34,12 @@ def leg_gap(leg: Leg, q: Array, pose: Pose) -> tuple[Array, Array, Array]:
         pose: of the platform.
 
     Returns:
-        the gap (points in m, then axes), its Jacobian by q, and by the
+        the residual (points in m, then axes), its Jacobian by q, and by the
         platform's twist (6 columns).
     """
     chain = chain_pose(leg, q, base_of(leg))
     arm = pose.R @ np.array(leg.platform_point)
-    gaps = [chain.tip - pose.t - arm]
+    residuals = [chain.tip - pose.t - arm]
     by_q = [chain.velocities]
     by_twist = [np.hstack([-np.eye(3), skew(arm)])]
     for condition in leg.platform_joint.closures:
@@ -47,14 +47,14 @@ def leg_gap(leg: Leg, q: Array, pose: Pose) -> tuple[Array, Array, Array]:
         a_by_q = np.cross(chain.spins.T, a).T
         b_by_twist = np.hstack([np.zeros((3, 3)), -skew(b)])
         if condition.perpendicular:
-            gaps.append(np.array([a @ b]))
+            residuals.append(np.array([a @ b]))
             by_q.append((b @ a_by_q)[None, :])
             by_twist.append((a @ b_by_twist)[None, :])
         else:
-            gaps.append(a - b)
+            residuals.append(a - b)
             by_q.append(a_by_q)
             by_twist.append(-b_by_twist)
-    return np.concatenate(gaps), np.vstack(by_q), np.vstack(by_twist)
+    return np.concatenate(residuals), np.vstack(by_q), np.vstack(by_twist)
 
 
 def solve(residual: Residual, step: Step, move: Move, x: Array) -> Array:

@@ -19,7 +19,7 @@ from pne_sym.model.values import EXACT, number
 
 FIELDS = ("X", "q")
 TOLERANCE = 1e-6
-"""Gap (m; axes: rad) up to which the given home counts as closed."""
+"""Loop-closure residual (m; axes: rad) up to which the given home counts as closed."""
 DIGITS = 13
 """Decimals to which displacements are found, the same on every machine."""
 LARGE = 50.0
@@ -113,10 +113,10 @@ def _found(entry: Entry, loops: Loops, X: Array) -> tuple[Array, Array]:
     """X, and q of the usual closure of every leg."""
     found = all_closures(loops, X)
     q = np.concatenate([leg[0] for leg in found])
-    if max(loops.gaps(X, q)) > _exact(X, q):
+    if max(loops.residuals(X, q)) > _exact(X, q):
         new_x, q = all_closed(loops, X, q)  # the legs restrict the platform: the pose gives way
         moved = float(np.abs(new_x - X).max())
-        if max(loops.gaps(new_x, q)) > TOLERANCE or moved > REACH:
+        if max(loops.residuals(new_x, q)) > TOLERANCE or moved > REACH:
             raise entry.fault(
                 "X, base_point and platform_point with which all legs can be closed",
                 problem=f"no displacements close the loops at X: {loops.widest(X, q)} at best"
@@ -151,26 +151,27 @@ def _closed(entry: Entry, loops: Loops, X: Array, q: Array) -> tuple[Array, Arra
     """X and q with the loops closed; revolute displacements within (-pi, pi]."""
     given, q = q, principal(loops.joints, q.tolist())
     q[loops.extra] = X[loops.size :]
-    gaps = loops.gaps(X, q)
+    residuals = loops.residuals(X, q)
     exact = _exact(X, q)
-    if max(gaps) <= exact:
+    if max(residuals) <= exact:
         return X, q
     new_x, new_q = X, legs_closed(loops, X, q)
-    if max(loops.gaps(new_x, new_q)) > exact:
+    if max(loops.residuals(new_x, new_q)) > exact:
         # The legs restrict the platform: the pose itself has to give way.
         new_x, new_q = all_closed(loops, X, new_q)
     moved = max(float(np.abs(new_x - X).max()), float(np.abs(new_q - q).max()))
     widest = loops.widest(X, q)
-    if max(loops.gaps(new_x, new_q)) > TOLERANCE or moved > REACH:
+    if max(loops.residuals(new_x, new_q)) > TOLERANCE or moved > REACH:
         raise entry.fault(
-            f"X and q with gaps of at most {TOLERANCE:g} (m or rad), "
+            f"X and q with loop-closure residuals of at most {TOLERANCE:g} (m or rad), "
             f"or a guess within {REACH:g} (m or rad) of such, or no q: it is found then",
             problem=f"the loops do not close at X: {widest}{mistaken_unit(loops, X, given)}",
         )
-    if max(gaps) > TOLERANCE:
+    if max(residuals) > TOLERANCE:
         warnings.warn(
-            f"{entry.source}: {entry.where}: taken as a rough guess (gap {widest.size} at "
-            f"legs[{widest.leg}]); closed by a change of at most {moved:.3g} (m or rad)",
+            f"{entry.source}: {entry.where}: taken as a rough guess (loop-closure residual "
+            f"{widest.size} at legs[{widest.leg}]); closed by a change of at most {moved:.3g} "
+            "(m or rad)",
             SpecWarning,
             stacklevel=2,
         )
@@ -178,7 +179,7 @@ def _closed(entry: Entry, loops: Loops, X: Array, q: Array) -> tuple[Array, Arra
 
 
 def _exact(X: Array, q: Array) -> float:
-    """The gap that counts as none."""
+    """The residual that counts as none."""
     return CLOSED * max(1.0, float(np.abs(X).max()), float(np.abs(q).max()))
 
 

@@ -1,4 +1,4 @@
-"""Joints of a leg: one-freedom joints, and sequences that stand for U, C, S."""
+"""Joints of a leg: one-degree-of-freedom joints, and sequences that stand for U, C, S."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _OUT_OF_PLANE: Vector3 = (0.0, 0.0, 1.0)
 
 
 def read_joint(entry: Entry, *, plane: bool) -> tuple[Joint, ...]:
-    """The one-freedom joints that a joint of the specification stands for.
+    """The one-degree-of-freedom joints that a joint of the specification stands for.
 
     U, C and S become R R, R P and R R R at one point, with massless links
     between; the link given belongs to the last.
@@ -77,13 +77,13 @@ def read_joint(entry: Entry, *, plane: bool) -> tuple[Joint, ...]:
 
 
 def _names(entry: Entry | None, count: int) -> list[str]:
-    """Of the freedoms of a joint: a list, or one name, which is numbered where they are several."""
+    """For each degree of freedom: a list, or one name, numbered where they are several."""
     if entry is None:
         return [""] * count
     if isinstance(entry.value, list | tuple):
         entries = entry.items()
         if len(entries) != count:
-            raise entry.fault(f"a name, or a list of {count}: one for each freedom")
+            raise entry.fault(f"a name, or a list of {count}: one for each degree of freedom")
         return [read_part_name(each) for each in entries]
     name = read_part_name(entry)
     return [name] if count == 1 else [f"{name}_{k}" for k in range(1, count + 1)]
@@ -150,7 +150,7 @@ def _planar_platform_joint(table: Table, kind: PlatformJointKind, point: Vector3
 
 
 def _axes(table: Table, kind: WrittenJoint, *, plane: bool) -> tuple[Vector3, ...]:
-    """The axis of each freedom."""
+    """The axis of each degree of freedom."""
     if kind.crossed:
         table.refuse(("axis",), f"a joint of kind {kind} has axes = [...]")
         return _perpendicular(table, len(kind.parts))
@@ -208,5 +208,5 @@ def check_count(entry: Entry, count: int) -> None:
         SpecError: no joint, or more than `MAX_JOINTS`.
     """
     if not 1 <= count <= MAX_JOINTS:
-        expected = f"1 to {MAX_JOINTS} joints with one freedom each"
+        expected = f"1 to {MAX_JOINTS} joints with one degree of freedom each"
         raise SpecError(entry.source, entry.where, f"{count} joints", expected)

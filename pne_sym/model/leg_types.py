@@ -1,7 +1,7 @@
 """Which legs are of equal structure, and what their types are called.
 
 Structure is what contract-wise cannot change with a parameter's value: joint
-kinds and order, driven and extra marks, axes along coordinate directions,
+kinds and order, actuated and extra marks, axes along coordinate directions,
 relations between neighbouring axes, zero offsets, massless links; which friction,
 springs and motors there are.
 """

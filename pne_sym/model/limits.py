@@ -47,5 +47,6 @@ def check_limits(entry: Entry, home: Home, legs: Sequence[Leg]) -> None:
                 raise entry.fault(
                     f"a displacement from {least:g} to {largest:g} {joint.kind.unit} there, the "
                     f"limits of legs[{i}].joints[{j}], or wider limits",
-                    problem=f"home.q has {value:.6g} {joint.kind.unit} at freedom {j} of legs[{i}]",
+                    problem=f"home.q has {value:.6g} {joint.kind.unit} at degree of freedom {j} of "
+                    f"legs[{i}]",
                 )

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from pne_sym.model.closure import least_norm, leg_gap, solve, unreachable
+from pne_sym.model.closure import least_norm, leg_residual, solve, unreachable
 from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at
 from pne_sym.model.manipulator import Joint, Leg, Space, Vector3
 
@@ -16,8 +16,8 @@ Flags = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Gap:
-    """The widest gap of a mechanism's loops.
+class LoopResidual:
+    """The largest loop-closure residual of a mechanism.
 
     Attributes:
         leg: its leg, counted from 0.
@@ -33,7 +33,7 @@ class Gap:
 
     def __str__(self) -> str:
         named = f" ({self.name})" if self.name else ""
-        where = f"legs[{self.leg}]{named} has a gap of {self.size}"
+        where = f"legs[{self.leg}]{named} has a loop-closure residual of {self.size}"
         return f"{where}: {self.condition}" if self.condition else where
 
 
@@ -71,25 +71,28 @@ class Loops:
         ends = np.cumsum([0, *(len(leg.joints) for leg in self.legs)]).tolist()
         return [slice(a, b) for a, b in pairwise(ends)]
 
-    def gaps(self, X: Array, q: Array) -> list[float]:
-        """The largest gap of each leg."""
+    def residuals(self, X: Array, q: Array) -> list[float]:
+        """The largest residual of each leg."""
         pose = pose_at(self.space, X.tolist(), self.centre)
-        gaps = (
-            leg_gap(leg, q[s], pose)[0] for leg, s in zip(self.legs, self.slices(), strict=True)
+        residuals = (
+            leg_residual(leg, q[s], pose)[0]
+            for leg, s in zip(self.legs, self.slices(), strict=True)
         )
-        return [float(np.abs(gap).max()) for gap in gaps]
+        return [float(np.abs(gap).max()) for gap in residuals]
 
-    def widest(self, X: Array, q: Array) -> Gap:
-        """The gap that is widest: a length, or an angle between axes."""
-        leg = int(np.argmax(self.gaps(X, q)))
+    def widest(self, X: Array, q: Array) -> LoopResidual:
+        """The largest residual: a length, or an angle between axes."""
+        leg = int(np.argmax(self.residuals(X, q)))
         name = self.legs[leg].name
         pose = pose_at(self.space, X.tolist(), self.centre)
-        gap = np.abs(leg_gap(self.legs[leg], q[self.slices()[leg]], pose)[0])
+        gap = np.abs(leg_residual(self.legs[leg], q[self.slices()[leg]], pose)[0])
         points, axes = gap[:3], gap[3:]
         if not axes.max(initial=0.0) > points.max():
-            return Gap(leg, f"{points.max():.3g} m", name=name)
+            return LoopResidual(leg, f"{points.max():.3g} m", name=name)
         kind = self.legs[leg].platform_joint.kind
-        return Gap(leg, f"{kind.angle(float(np.linalg.norm(axes))):.3g} rad", kind.open, name)
+        return LoopResidual(
+            leg, f"{kind.angle(float(np.linalg.norm(axes))):.3g} rad", kind.open, name
+        )
 
 
 def legs_closed(loops: Loops, X: Array, q: Array) -> Array:
@@ -100,10 +103,10 @@ def legs_closed(loops: Loops, X: Array, q: Array) -> Array:
         free = ~loops.extra[s]
 
         def residual(x: Array, leg: Leg = leg) -> Array:
-            return leg_gap(leg, x, pose)[0]
+            return leg_residual(leg, x, pose)[0]
 
         def step(x: Array, leg: Leg = leg, free: Flags = free) -> Array:
-            gap, by_q, _ = leg_gap(leg, x, pose)
+            gap, by_q, _ = leg_residual(leg, x, pose)
             return least_norm(by_q * free, -gap)
 
         result[s] = solve(residual, step, np.add, q[s])
@@ -116,17 +119,17 @@ def all_closed(loops: Loops, X: Array, q: Array) -> tuple[Array, Array]:
     twist = TASK_SPACES[loops.space].components
     slices = loops.slices()
 
-    def gaps(x: Array) -> list[tuple[Array, Array, Array]]:
+    def residuals(x: Array) -> list[tuple[Array, Array, Array]]:
         pose = pose_at(loops.space, x[:size].tolist(), loops.centre)
         pairs = zip(loops.legs, slices, strict=True)
-        found = [(leg_gap(leg, x[size:][s], pose), s) for leg, s in pairs]
+        found = [(leg_residual(leg, x[size:][s], pose), s) for leg, s in pairs]
         return [(gap, by_q * free[s], by_twist[:, twist]) for (gap, by_q, by_twist), s in found]
 
     def residual(x: Array) -> Array:
-        return np.concatenate([gap for gap, _, _ in gaps(x)])
+        return np.concatenate([gap for gap, _, _ in residuals(x)])
 
     def step(x: Array) -> Array:
-        legs = gaps(x)
+        legs = residuals(x)
         out = [unreachable(by_q) for _, by_q, _ in legs]
         platform = least_norm(
             np.vstack([n @ by_twist for n, (_, _, by_twist) in zip(out, legs, strict=True)]),

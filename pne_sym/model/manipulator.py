@@ -1,7 +1,7 @@
 """A manipulator as frozen data: the full form of a specification.
 
 A manipulator is a platform carried by legs in parallel.  A leg is a chain of
-joints with one freedom each (universal, cylindrical and spherical joints are
+joints with one degree of freedom each (universal, cylindrical and spherical joints are
 sequences of them with massless links between), closed by a platform joint.
 
 All quantities are in SI units and radians.  Frames: the *base* frame is fixed;
@@ -77,7 +77,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint with one freedom and the link that it moves.
+    """A joint with one degree of freedom and the link that it moves.
 
     Attributes:
         kind: revolute, prismatic or helical.
@@ -85,7 +85,7 @@ class Joint:
         offset: from the preceding joint's origin (the first: from the leg's
             base point) to this joint's, in the preceding link's frame, m.
         pitch: advance of a helical joint per angle, m/rad; 0 otherwise.
-        actuated: the joint is driven.
+        actuated: the joint is actuated.
         extra: the displacement is a generalised coordinate of its own.
         link: inertia of the link that the joint moves, in the link's frame.
         friction, spring, actuator, limits: what acts in the joint, and its bounds; None: absent.

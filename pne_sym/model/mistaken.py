@@ -8,14 +8,14 @@ from itertools import product
 import numpy as np
 
 from pne_sym.model.assembly import closures, middle_of
-from pne_sym.model.closure import leg_gap
+from pne_sym.model.closure import leg_residual
 from pne_sym.model.kinematics import TASK_SPACES, Array, pose_at
 from pne_sym.model.loops import Loops
 from pne_sym.model.manipulator import Leg, Space, Vector3
 
 _MILLI = 1e-3
 _NEAR = 1e-2
-"""Gap, over the largest length, with which loops count as closed but for rounding."""
+"""Residual, over the largest length, with which loops count as closed but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def _closes(loops: Loops, X: Array, q: Array | None, case: _Mistake) -> bool:
     for leg, s in zip(legs, loops.slices(), strict=True):
         given = np.zeros(len(leg.joints)) if q is None else q[s]
         found = closures(leg, pose, given, middle_of(legs, pose))[0] if q is None else given
-        if np.abs(leg_gap(leg, found, pose)[0]).max() > _NEAR * _size(leg, pose.t):
+        if np.abs(leg_residual(leg, found, pose)[0]).max() > _NEAR * _size(leg, pose.t):
             return False
     return True
 

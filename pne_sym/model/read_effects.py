@@ -22,15 +22,15 @@ _Kind = TypeVar("_Kind")
 def read_effects(
     table: Table, actuated: Sequence[bool], *, mixed: bool = False
 ) -> tuple[Effects, ...]:
-    """What acts in each freedom of a joint.
+    """What acts in each degree of freedom of a joint.
 
     Args:
         table: of the joint.
-        actuated: for each of its freedoms, whether it is driven.
-        mixed: its freedoms differ in kind, so that one table cannot be meant for all of them.
+        actuated: for each of its degrees of freedom, whether it is actuated.
+        mixed: its degrees of freedom differ in kind: one table cannot be meant for all.
 
     Raises:
-        SpecError: a value without meaning, or a motor where nothing is driven.
+        SpecError: a value without meaning, or a motor where nothing is actuated.
     """
     count = len(actuated)
     frictions = _each(table.get("friction"), count, read_friction, mixed=mixed)
@@ -39,51 +39,53 @@ def read_effects(
     motors = _each(table.get("actuator"), count, read_actuator, mixed=mixed and sum(actuated) > 1)
     entry = table.get("actuator")
     if entry:
-        motors = _driven(entry, motors, actuated)
+        motors = _actuated(entry, motors, actuated)
     entry = table.get("limits")
     if entry:
-        limits = _of_driven_efforts(entry, limits, actuated)
+        limits = _of_actuated_efforts(entry, limits, actuated)
     return tuple(map(Effects, frictions, springs, motors, limits))
 
 
 def _each(
     entry: Entry | None, count: int, read: Callable[[Entry], _Kind], *, mixed: bool
 ) -> tuple[_Kind | None, ...]:
-    """What each freedom has: a table is meant for every one, a list has one entry for each."""
+    """What each degree of freedom has: a table is for every one, a list has an entry for each."""
     if entry is None or entry.value is False:
         return (None,) * count
     if isinstance(entry.value, list | tuple):
         items = entry.items()
         if len(items) != count:
             raise entry.fault(
-                f"{count} entries, a table or false for each freedom", f"{len(items)} entries"
+                f"{count} entries, a table or false for each degree of freedom",
+                f"{len(items)} entries",
             )
         return tuple(None if item.value is False else read(item) for item in items)
     if mixed:
         raise entry.fault(
-            f"a list of {count}, a table or false for each freedom: one slides, the other turns"
+            f"a list of {count}, a table or false for each degree of freedom: one is "
+            "prismatic, the other revolute"
         )
     return (read(entry),) * count
 
 
-def _driven(
+def _actuated(
     entry: Entry, motors: tuple[Actuator | None, ...], actuated: Sequence[bool]
 ) -> tuple[Actuator | None, ...]:
-    """Motors of the driven freedoms: one table is meant for these alone."""
+    """Motors of the actuated degrees of freedom: one table is meant for these alone."""
     listed = isinstance(entry.value, list | tuple)
-    idle = any(motor and not driven for motor, driven in zip(motors, actuated, strict=True))
+    idle = any(motor and not own for motor, own in zip(motors, actuated, strict=True))
     if idle and (listed or not any(actuated)):
         raise entry.fault("no motor where the joint is not actuated")
-    return tuple(motor if driven else None for motor, driven in zip(motors, actuated, strict=True))
+    return tuple(motor if own else None for motor, own in zip(motors, actuated, strict=True))
 
 
-def _of_driven_efforts(
+def _of_actuated_efforts(
     entry: Entry, limits: tuple[Limits | None, ...], actuated: Sequence[bool]
 ) -> tuple[Limits | None, ...]:
-    """Limits with efforts of the driven freedoms: one table's effort is meant for these alone."""
+    """Limits with efforts of actuated degrees of freedom: one table's effort is for these alone."""
     listed, found = isinstance(entry.value, list | tuple), []
-    for of, driven in zip(limits, actuated, strict=True):
-        if driven or of is None or of.effort is None:
+    for of, own in zip(limits, actuated, strict=True):
+        if own or of is None or of.effort is None:
             found.append(of)
         elif listed or not any(actuated):
             raise entry.fault("no effort where the joint is not actuated: nothing acts there")
@@ -131,7 +133,7 @@ def read_actuator(entry: Entry) -> Actuator:
     """
     table = entry.table(ACTUATOR)
     inertia = not_negative(table.require("rotor_inertia", "a number (kg m^2)"))
-    gear = table.require("gear_ratio", "motor angle per displacement (a slide: rad/m)")
+    gear = table.require("gear_ratio", "motor angle per displacement (of prismatic joints: rad/m)")
     ratio = number(gear)
     if abs(ratio) < SNAP:
         raise gear.fault(f"a number other than zero, at least {SNAP:g} in size")

@@ -147,7 +147,7 @@ def _joint_fields() -> dict[str, Schema]:
 
 
 def _for_each(item: Schema) -> Schema:
-    """For all freedoms of a joint, or a list with an entry for each; false: none."""
+    """For all degrees of freedom of a joint, or a list with an entry for each; false: none."""
     none: Schema = {"const": False}
     return {"anyOf": [item, none, _list_of({"anyOf": [item, none]}, 1, 3)]}
 

@@ -16,7 +16,7 @@ MEANING: dict[str, dict[str, str]] = {
         "frame, m.",
         "platform": "Mass, centre of mass and inertia of the platform, platform frame.",
         "leg_types": "Joints and platform joints that legs share, by name.",
-        "legs": "The legs; their order is that of q, of the drives and of constraint forces.",
+        "legs": "The legs; their order is that of q, of the actuators and of constraint forces.",
         "home": "A pose at which the loops close; it selects the assembly branch.",
         "symbols": "How the report writes quantities: name in the generated code = symbol.",
     },
@@ -32,42 +32,43 @@ MEANING: dict[str, dict[str, str]] = {
     },
     "joint": {
         "name": "What the joint is called in code and report; at most 20 characters. Of U, C, S "
-        "one name is numbered, a list has one for each freedom. Default: its number.",
+        "one name is numbered, a list has one for each degree of freedom. Default: its number.",
         "kind": "R revolute, P prismatic, H helical, U universal, C cylindrical, S spherical.",
         "axis": "Unit vector in the preceding link's frame, or a direction such as x or -z.",
         "axes": "Of U (two) and S (three): unit vectors, each perpendicular to the next.",
         "offset": "From the preceding joint (the first: from base_point), preceding link's frame, "
         "m.",
         "pitch": "Of H: advance per angle, m/rad.",
-        "actuated": "Driven; of joints with several freedoms a list, one entry for each.",
+        "actuated": "Actuated; of several degrees of freedom a list, one entry for each.",
         "extra": "The displacement is a coordinate of its own, appended to X.",
         "link": "Inertia of the link that the joint moves, link frame. Default: massless.",
         "friction": "Viscous and Coulomb friction, of passive joints too. Of U and S one table is "
-        "meant for every freedom, a list has a table or false for each; C needs a list.",
+        "meant for every degree of freedom, a list has a table or false for each; C needs a list.",
         "spring": "A spring between the links. U, C, S: as friction.",
         "actuator": "The motor of an actuated joint. Of U, C, S one table is meant for every "
-        "driven freedom, a list has a table or false for each.",
+        "actuated degree of freedom, a list has a table or false for each.",
         "limits": "What the joint may do; it does not act on it. U, C, S: as friction.",
     },
     "friction": {
-        "viscous": "Friction per rate, N m s/rad, of slides N s/m.",
-        "coulomb": "Friction at high rates v, N m, of slides N: times v / sqrt(v^2 + "
+        "viscous": "Friction per rate, N m s/rad, of prismatic joints N s/m.",
+        "coulomb": "Friction at high rates v, N m, of prismatic joints N: times v / sqrt(v^2 + "
         "velocity_scale^2).",
-        "velocity_scale": "Rate below which Coulomb friction grows linearly, rad/s, of slides m/s.",
+        "velocity_scale": "Rate below which Coulomb friction grows linearly, rad/s, of prismatic "
+        "joints m/s.",
     },
     "spring": {
-        "stiffness": "N m/rad, of slides N/m.",
-        "rest": "Displacement without force, rad, of slides m. Default: 0.",
+        "stiffness": "N m/rad, of prismatic joints N/m.",
+        "rest": "Displacement without force, rad, of prismatic joints m. Default: 0.",
     },
     "actuator": {
         "rotor_inertia": "Of all that turns with the motor, about its axis, kg m^2.",
-        "gear_ratio": "Motor angle per displacement, of slides rad/m; negative where it turns the "
-        "other way.",
+        "gear_ratio": "Motor angle per displacement, of prismatic joints rad/m; negative where it "
+        "turns the other way.",
     },
     "limits": {
-        "displacement": "Least and largest, rad, of slides m.",
-        "rate": "Largest size, rad/s, of slides m/s.",
-        "effort": "Largest size of the actuator's torque, N m, of slides force, N.",
+        "displacement": "Least and largest, rad, of prismatic joints m.",
+        "rate": "Largest size, rad/s, of prismatic joints m/s.",
+        "effort": "Largest size of the actuator's torque, N m, of prismatic joints force, N.",
     },
     "platform_joint": {
         "kind": "S spherical, R revolute, U universal, rigid; in the plane R or S.",

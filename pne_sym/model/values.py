@@ -157,19 +157,19 @@ def matrix(entry: Entry, *, plane: bool = False) -> Matrix3:
 
 
 def flags(entry: Entry | None, count: int) -> tuple[bool, ...]:
-    """True or false for each of `count` freedoms; left out means false.
+    """True or false for each of `count` degrees of freedom; left out means false.
 
     Raises:
-        SpecError: another shape, or a single `true` for several freedoms.
+        SpecError: another shape, or a single `true` for several degrees of freedom.
     """
     if entry is None or entry.value is False:
         return (False,) * count
     if isinstance(entry.value, list | tuple):
         if len(entry.value) != count:
-            raise entry.fault(f"{count} values true or false, one for each freedom")
+            raise entry.fault(f"{count} values true or false, one for each degree of freedom")
         return tuple(item.flag() for item in entry.items())
     if count > 1:
-        raise entry.fault(f"a list of {count} values true or false, one for each freedom")
+        raise entry.fault(f"a list of {count} values true or false, one for each degree of freedom")
     return (entry.flag(),)
 
 

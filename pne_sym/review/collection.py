@@ -83,8 +83,8 @@ def _described(source: Source) -> str:
     for t in m["leg_types"]:
         counted[t["architecture"]] = counted.get(t["architecture"], 0) + len(t["legs"])
     legs = ", ".join(f"{n} {architecture}" for architecture, n in counted.items())
-    drives = f"{sizes['NV']} degrees of freedom, {sizes['NU']} actuators"
-    return f"{m['title']} ({m['space']}; legs: {legs}; {drives})"
+    actuators = f"{sizes['NV']} degrees of freedom, {sizes['NU']} actuators"
+    return f"{m['title']} ({m['space']}; legs: {legs}; {actuators})"
 
 
 def as_text(before: Source, after: Source, parts: list[Part]) -> Iterator[str]:

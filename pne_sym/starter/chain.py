@@ -38,8 +38,8 @@ class WrittenJoint:
 
     Attributes:
         fields: kind, axis or axes, offset, pitch, link.
-        home: displacement of each freedom; what a mirrored leg negates is in `mirrored`.
-        mirrored: for each freedom, whether a mirrored leg has the opposite sign.
+        home: displacement of each degree of freedom; what a mirrored leg negates is in `mirrored`.
+        mirrored: for each degree of freedom, whether a mirrored leg has the opposite sign.
         comment: what it is, for people.
         letter: of the notation.
     """
@@ -149,7 +149,7 @@ def _joint(letter: Letter, axes: Axes, gap: float, place: _Place) -> tuple[Writt
 
 
 def _home(kind: JointKind, axis: str, place: _Place) -> tuple[float, bool]:
-    """Displacement of a freedom, and whether mirrored legs have the opposite."""
+    """Displacement of a degree of freedom, and whether mirrored legs have the opposite."""
     if not kind.slides:
         return _angle(axis, place)
     way = place.length if place.telescope else 0.1
@@ -157,7 +157,7 @@ def _home(kind: JointKind, axis: str, place: _Place) -> tuple[float, bool]:
 
 
 def _angle(axis: str, place: _Place) -> tuple[float, bool]:
-    """Displacement of a freedom that turns, and whether mirrored legs have the opposite."""
+    """Displacement of a revolute joint, and whether mirrored legs have the opposite."""
     if axis == "z":
         return place.bend, False
     return (place.side, True) if axis == "y" else (0.2, True)

@@ -1,4 +1,4 @@
-"""Choice of axes and extra joints of a leg, so that its freedoms are independent at home."""
+"""Choice of axes and extra joints of a leg, so that it is regular at home."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from pne_sym.model.closure import leg_gap
+from pne_sym.model.closure import leg_residual
 from pne_sym.model.entry import Entry
 from pne_sym.model.errors import SpecError
 from pne_sym.model.joint_kinds import WrittenJoint
@@ -32,7 +32,7 @@ from pne_sym.starter.notation import SOURCE, LegGroup
 Array = npt.NDArray[np.float64]
 
 GOOD = 0.2
-"""Independence of a leg's freedoms (0 dependent, 1 orthogonal) that ends the search."""
+"""Independence of a leg's degrees of freedom (0 dependent, 1 orthogonal) that ends the search."""
 LEAST = 0.02
 _MOST_TRIED = 3000
 _DIRECTIONS: dict[str, Vector3] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -44,7 +44,7 @@ class Shape:
 
     Attributes:
         chain: its joints as written.
-        extra: freedoms that are coordinates of their own.
+        extra: degrees of freedom that are coordinates of their own.
         idle: those of them that do not move the platform joint at all.
         axis_link: of a platform joint U or R in space, name of a direction.
         axis_leg: the platform's axis of it, in the leg frame.
@@ -68,7 +68,7 @@ class Shape:
 
     @property
     def home(self) -> tuple[float, ...]:
-        """Displacements of all freedoms."""
+        """Displacements of all degrees of freedom."""
         return displacements(self.chain, mirrored=self.mirrored)
 
 
@@ -79,12 +79,12 @@ def is_concentric(group: LegGroup, space: Space) -> bool:
 
 
 def choose_shape(group: LegGroup, space: Space, *, side: float, straight: bool = False) -> Shape:
-    """The first usual choice of axes whose freedoms are well independent, else the best.
+    """The first usual choice of axes whose degrees of freedom are well independent, else the best.
 
     Where the platform does not turn, one that leaves all of its motions free comes first.
 
     Raises:
-        SpecError: freedoms that are always dependent, or too few marked extra.
+        SpecError: degrees of freedom that are always dependent, or too few marked extra.
     """
     plane, concentric = is_plane(space), is_concentric(group, space)
     best: tuple[float, Shape] | None = None
@@ -101,7 +101,8 @@ def choose_shape(group: LegGroup, space: Space, *, side: float, straight: bool =
         raise SpecError(
             SOURCE,
             "",
-            f"the freedoms of a {group.plain} leg are dependent however its axes are laid",
+            f"the degrees of freedom of a {group.plain} leg are dependent however its axes "
+            "are laid",
             "a chain without superfluous joints, or the surplus marked extra by *",
         )
     return best[1]
@@ -115,7 +116,7 @@ def reshaped(shape: Shape, *, mirrored: bool, plane: bool, platform: PlatformJoi
 
 
 def displacements(chain: Chain, *, mirrored: bool) -> tuple[float, ...]:
-    """Displacements of all freedoms at home."""
+    """Displacements of all degrees of freedom at home."""
     return tuple(
         -value if mirrored and flips else value
         for joint in chain.joints
@@ -123,8 +124,8 @@ def displacements(chain: Chain, *, mirrored: bool) -> tuple[float, ...]:
     )
 
 
-def freedoms(chain: Chain, *, plane: bool) -> tuple[Joint, ...]:
-    """The joints with one freedom each that the written ones stand for."""
+def dofs(chain: Chain, *, plane: bool) -> tuple[Joint, ...]:
+    """The joints with one degree of freedom each that the written ones stand for."""
     return tuple(
         joint
         for written in chain.joints
@@ -160,7 +161,7 @@ def _candidates(group: LegGroup, *, plane: bool) -> Iterator[tuple[tuple[Axes, .
 
 
 def _judged(group: LegGroup, chain: Chain, axis_link: str, space: Space) -> tuple[float, Shape]:
-    """Independence of the freedoms, and the shape with its extra joints chosen.
+    """Independence of the degrees of freedom, and the shape with its extra joints chosen.
 
     Legs that hold a platform which does not turn are judged below all others.
     """
@@ -187,7 +188,7 @@ def _judged(group: LegGroup, chain: Chain, axis_link: str, space: Space) -> tupl
 
 
 def _extra_sets(group: LegGroup, count: int, conditions: int) -> Iterator[tuple[bool, ...]]:
-    """The marked extra freedoms, or every choice of as many as are surplus."""
+    """The marked extra degrees of freedom, or every choice of as many as are surplus."""
     marked = []
     for letter in group.letters:
         marked += [False] * (len(letter.kind.parts) - 1) + [letter.extra]
@@ -197,7 +198,8 @@ def _extra_sets(group: LegGroup, count: int, conditions: int) -> Iterator[tuple[
             raise SpecError(
                 SOURCE,
                 "",
-                f"{count - sum(marked)} freedoms of a {group.plain} leg that are not marked extra",
+                f"{count - sum(marked)} degrees of freedom of a {group.plain} leg that are not "
+                "marked extra",
                 f"at most {conditions}: {surplus} marked by *, or none to have them chosen",
             )
         yield tuple(marked)
@@ -216,7 +218,7 @@ def _columns(
     *,
     plane: bool,
 ) -> tuple[Array, Array]:
-    """Rates of the closure gap by freedoms and by translations, platform parallel to the leg."""
+    """Rates of the residual by joints and by translations, platform parallel to the leg."""
     tip, last = end
     kind = PlatformJointKind.SPHERICAL if plane else group.platform
     platform = PlatformJoint(kind, (chain.end, 0.0, 0.0))
@@ -225,9 +227,9 @@ def _columns(
         platform = replace(platform, axis_link=_DIRECTIONS[axis_link], axis_platform=(x, y, z))
     if "rotation" in kind.fields:
         platform = replace(platform, rotation=last.T.tolist())
-    leg = Leg(ZERO3, IDENTITY3, freedoms(chain, plane=plane), platform, ZERO3)
+    leg = Leg(ZERO3, IDENTITY3, dofs(chain, plane=plane), platform, ZERO3)
     q = np.array(displacements(chain, mirrored=False))
-    _, by_q, by_twist = leg_gap(leg, q, Pose(tip, np.eye(3)))
+    _, by_q, by_twist = leg_residual(leg, q, Pose(tip, np.eye(3)))
     return (by_q[:2], by_twist[:2, :2]) if plane else (by_q, by_twist[:, :3])
 
 
@@ -238,7 +240,7 @@ def _rank(matrix: Array) -> int:
 def _end(chain: Chain, *, plane: bool, mirrored: bool) -> tuple[Array, Array]:
     """The platform joint and the last link's axes, in the leg frame at home."""
     end = PlatformJoint(PlatformJointKind.SPHERICAL, (chain.end, 0.0, 0.0))
-    leg = Leg(ZERO3, IDENTITY3, freedoms(chain, plane=plane), end, ZERO3)
+    leg = Leg(ZERO3, IDENTITY3, dofs(chain, plane=plane), end, ZERO3)
     found = chain_pose(leg, displacements(chain, mirrored=mirrored))
     return found.tip, found.last
 

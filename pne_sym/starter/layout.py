@@ -1,4 +1,4 @@
-"""The arrangement of legs: of a few usual ones, one whose drives hold the platform well."""
+"""The arrangement of legs: of a few usual ones, one whose actuators hold the platform well."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from pne_sym.mechanics.mobility import drive_quality
+from pne_sym.mechanics.mobility import actuation_quality
 from pne_sym.model.errors import SpecError, SpecNote, SpecWarning
 from pne_sym.model.joint_kinds import WrittenJoint
 from pne_sym.model.kind import Kind
@@ -16,8 +16,8 @@ from pne_sym.model.legs import is_plane
 from pne_sym.model.manipulator import Manipulator, Space
 from pne_sym.model.platform_kinds import PlatformJointKind
 from pne_sym.model.reader import from_mapping
+from pne_sym.starter.actuators import Flags, choose_actuators, other_actuators
 from pne_sym.starter.choose import Shape, choose_shape, in_space
-from pne_sym.starter.drives import Flags, choose_drives, other_drives
 from pne_sym.starter.notation import SOURCE, LegGroup, is_guide, is_marked
 from pne_sym.starter.place import CORNER, HEIGHT, Placed, leg_names, place_legs, stretch
 from pne_sym.starter.points import Points
@@ -44,13 +44,13 @@ class Plan:
     Attributes:
         groups: of the notation.
         shapes: of a leg of each group.
-        drives: for each group, whether each freedom is driven.
+        actuators: for each group, whether each degree of freedom is actuated.
         spec: as plain data.
     """
 
     groups: tuple[LegGroup, ...]
     shapes: tuple[Shape, ...]
-    drives: tuple[Flags, ...]
+    actuators: tuple[Flags, ...]
     spec: Plain
 
 
@@ -58,7 +58,7 @@ def default_space(groups: tuple[LegGroup, ...]) -> Space:
     """The plane where all joints can move in it and legs are short; else space."""
     flat = all(
         group.platform is PlatformJointKind.REVOLUTE
-        and group.freedoms <= 3
+        and group.dofs <= 3
         and all(letter.kind.in_plane for letter in group.letters)
         for group in groups
     )
@@ -72,10 +72,10 @@ def make_plan(
     space: Space,
     points: Points | None = None,
 ) -> Plan:
-    """The arrangement, of a few usual ones, whose drives hold the platform best.
+    """The arrangement, of a few usual ones, whose actuators hold the platform best.
 
     Raises:
-        SpecError: the legs do not fit the space, or their freedoms are dependent.
+        SpecError: the legs do not fit the space, or their degrees of freedom are dependent.
     """
     _check_letters(groups, space)
     draft = _Draft(name, title, groups, space, points)
@@ -87,7 +87,7 @@ def make_plan(
 
 
 def _first_good(plans: Iterator[tuple[float, Plan]]) -> tuple[float, Plan]:
-    """The first plan whose drives hold the platform well, else the best."""
+    """The first plan whose actuators hold the platform well, else the best."""
     best = next(plans)
     for found in plans:
         if best[0] >= _GOOD:
@@ -108,10 +108,10 @@ class _Draft:
     points: Points | None = None
 
     def plans(self, poor: Plan | None) -> Iterator[tuple[float, Plan]]:
-        """Arrangements with how well the drives hold the platform.
+        """Arrangements with how well the actuators hold the platform.
 
         Args:
-            poor: a plan whose drives do not; then others are tried.
+            poor: a plan whose actuators do not; then others are tried.
         """
         plane = is_plane(self.space)
         for side in _SIDES[:1] if plane else _SIDES:
@@ -119,14 +119,14 @@ class _Draft:
             if self.points:
                 shapes = stretch(self.groups, shapes, self.points)
             if poor:
-                drives = list(other_drives(poor.drives, shapes))
+                actuators = list(other_actuators(poor.actuators, shapes))
             else:
-                drives = choose_drives(self.groups, shapes, self._free(shapes))
-            for (tilt, mirror), driven in itertools.product(_options(self.space), drives):
-                yield self._plan(shapes, driven, self._legs(shapes, tilt, mirror=mirror))
+                actuators = choose_actuators(self.groups, shapes, self._free(shapes))
+            for (tilt, mirror), actuated in itertools.product(_options(self.space), actuators):
+                yield self._plan(shapes, actuated, self._legs(shapes, tilt, mirror=mirror))
 
     def _shape(self, group: LegGroup, side: float) -> Shape:
-        """A leg; a guide is straight if its freedoms are independent so."""
+        """A leg; a guide is straight if its degrees of freedom are independent so."""
         if is_guide(group, self.groups):
             with contextlib.suppress(SpecError):
                 return choose_shape(group, self.space, side=side, straight=True)
@@ -138,16 +138,16 @@ class _Draft:
         )
 
     def _plan(
-        self, shapes: tuple[Shape, ...], drives: tuple[Flags, ...], legs: list[Placed]
+        self, shapes: tuple[Shape, ...], actuators: tuple[Flags, ...], legs: list[Placed]
     ) -> tuple[float, Plan]:
-        spec, manipulator = self._made(shapes, drives, legs)
-        return drive_quality(manipulator), Plan(self.groups, shapes, drives, spec)
+        spec, manipulator = self._made(shapes, actuators, legs)
+        return actuation_quality(manipulator), Plan(self.groups, shapes, actuators, spec)
 
     def _made(
-        self, shapes: tuple[Shape, ...], drives: tuple[Flags, ...], legs: list[Placed]
+        self, shapes: tuple[Shape, ...], actuators: tuple[Flags, ...], legs: list[Placed]
     ) -> tuple[Plain, Manipulator]:
         """The specification, with a home that closes, and what it describes."""
-        spec = _spec(self.name, self.title, self.groups, shapes, drives, legs, self.space)
+        spec = _spec(self.name, self.title, self.groups, shapes, actuators, legs, self.space)
         if not self.points:
             return spec, _read(spec)
         home = _table(spec["home"])
@@ -159,7 +159,7 @@ class _Draft:
         return spec, found
 
     def _free(self, shapes: tuple[Shape, ...]) -> Manipulator:
-        """The mechanism without any drive."""
+        """The mechanism without any actuator."""
         tilt, mirror = next(_options(self.space))
         none = tuple((False,) * len(shape.extra) for shape in shapes)
         return self._made(shapes, none, self._legs(shapes, tilt, mirror=mirror))[1]
@@ -227,15 +227,15 @@ def _spec(
     title: str,
     groups: tuple[LegGroup, ...],
     shapes: tuple[Shape, ...],
-    drives: tuple[Flags, ...],
+    actuators: tuple[Flags, ...],
     legs: list[Placed],
     space: Space,
 ) -> Plain:
     plane = is_plane(space)
     types = {
-        type_name: _leg_type(group, shape, driven, plane=plane)
-        for type_name, group, shape, driven in zip(
-            leg_names(groups), groups, shapes, drives, strict=True
+        type_name: _leg_type(group, shape, actuated, plane=plane)
+        for type_name, group, shape, actuated in zip(
+            leg_names(groups), groups, shapes, actuators, strict=True
         )
     }
     spread = [shape for g, shape in zip(groups, shapes, strict=True) for _ in range(g.count)]
@@ -268,7 +268,7 @@ def _platform(space: Space) -> Plain:
     return {"mass": 12.0, "centre_of_mass": [0.0, 0.0, 0.04], "inertia": [0.35, 0.35, 0.6]}
 
 
-def _leg_type(group: LegGroup, shape: Shape, driven: Flags, *, plane: bool) -> Plain:
+def _leg_type(group: LegGroup, shape: Shape, actuated: Flags, *, plane: bool) -> Plain:
     end: Plain = {"kind": group.platform.letter}
     if shape.chain.end:
         end["offset"] = [shape.chain.end, 0.0] if plane else [shape.chain.end, 0.0, 0.0]
@@ -279,7 +279,7 @@ def _leg_type(group: LegGroup, shape: Shape, driven: Flags, *, plane: bool) -> P
         size = len(written.letter.kind.parts)
         fields = dict(in_space(written.fields, plane))
         link = fields.pop("link")
-        for mark, values in (("actuated", driven), ("extra", shape.extra)):
+        for mark, values in (("actuated", actuated), ("extra", shape.extra)):
             own = list(values[at : at + size])
             if any(own):
                 fields[mark] = own[0] if size == 1 else own

@@ -1,7 +1,7 @@
 """Architecture notation: `6-UPS`, `2-RPR+1-RRR`, `3-_PRPS`; from the base to the platform.
 
-The last letter is the platform joint.  `_` before a letter marks the joint as driven, `*` after
-it as an extra coordinate.  Without any `_` in the whole text, drives are chosen.
+The last letter is the platform joint.  `_` before a letter marks the joint as actuated, `*` after
+it as an extra coordinate.  Without any `_` in the whole text, actuators are chosen.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ PLATFORM = {k.in_architecture: k for k in PlatformJointKind if k.in_architecture
 """Platform joints that the notation has; W (welded) is the rigid one."""
 _BY_MOMENTS = sorted(PLATFORM, key=lambda letter: PLATFORM[letter].moments)
 _ENDS = f"{', '.join(_BY_MOMENTS[:-1])} or {_BY_MOMENTS[-1]}"
-MOST_FREEDOMS = 7
+MOST_DOFS = 7
 SOURCE = "--legs"
 _GUIDED = 3
 """Legs beside a guide, at least."""
@@ -27,7 +27,7 @@ _GROUP = re.compile(r"(?:([0-9]{1,4})-)?((?:_?[A-Za-z]\*?)+)")
 _LETTER = re.compile(r"(_?)([A-Za-z])(\*?)")
 _GRAMMAR = (
     f"COUNT-LETTERS, several joined by +, of the letters {' '.join(map(str, WrittenJoint))}, "
-    "_ before a driven joint, * after an extra one, such as 6-UPS, 2-RPR+1-RRR, 6-U_PS"
+    "_ before an actuated joint, * after an extra one, such as 6-UPS, 2-RPR+1-RRR, 6-U_PS"
 )
 
 
@@ -37,12 +37,12 @@ class Letter:
 
     Attributes:
         kind: of joint.
-        driven: marked by `_`: of a universal joint the second freedom, of others all.
-        extra: marked by `*`: of joints with several freedoms the last.
+        actuated: marked by `_`: of a universal joint the second degree of freedom, of others all.
+        extra: marked by `*`: of joints with several degrees of freedom the last.
     """
 
     kind: WrittenJoint
-    driven: bool = False
+    actuated: bool = False
     extra: bool = False
 
 
@@ -61,8 +61,8 @@ class LegGroup:
     platform: PlatformJointKind
 
     @property
-    def freedoms(self) -> int:
-        """Freedoms of a leg, without those of the platform joint."""
+    def dofs(self) -> int:
+        """Degrees of freedom of a leg, without those of the platform joint."""
         return sum(len(letter.kind.parts) for letter in self.letters)
 
     @property
@@ -78,7 +78,7 @@ def parse_legs(text: str) -> tuple[LegGroup, ...]:
 
     >>> [(group.count, group.plain) for group in parse_legs("2-RPR+1-RRR")]
     [(2, 'RPR'), (1, 'RRR')]
-    >>> parse_legs("3-R_PS")[0].letters[1].driven
+    >>> parse_legs("3-R_PS")[0].letters[1].actuated
     True
 
     Raises:
@@ -100,12 +100,12 @@ def parse_legs(text: str) -> tuple[LegGroup, ...]:
 
 
 def is_marked(groups: tuple[LegGroup, ...]) -> bool:
-    """Whether any joint is marked as driven: then only the marked ones are."""
-    return any(letter.driven for group in groups for letter in group.letters)
+    """Whether any joint is marked as actuated: then only the marked ones are."""
+    return any(letter.actuated for group in groups for letter in group.letters)
 
 
 def is_guide(group: LegGroup, groups: tuple[LegGroup, ...]) -> bool:
-    """Whether it is a single leg without drives that holds the platform in the middle."""
+    """Whether it is a single leg without actuators that holds the platform in the middle."""
     others = sum(other.count for other in groups if other is not group)
     return group.count == 1 and group.platform.moments > 0 and others >= _GUIDED
 
@@ -117,7 +117,9 @@ def _group(part: str) -> LegGroup:
     count = int(match[1] or 1)
     if count < 1:
         raise _fault(f"{count} legs {show(match[2])}", "one leg or more")
-    written = [(kind.upper(), driven, extra) for driven, kind, extra in _LETTER.findall(match[2])]
+    written = [
+        (kind.upper(), actuated, extra) for actuated, kind, extra in _LETTER.findall(match[2])
+    ]
     return _leg(part, count, written)
 
 
@@ -141,12 +143,14 @@ def _leg(part: str, count: int, written: list[tuple[str, str, str]]) -> LegGroup
     for letter, *_ in chain:
         if letter not in known:
             raise _fault(f"joint {letter!r} in {show(part)}", "only as platform joint, at the end")
-    joints = tuple(Letter(known[kind], bool(driven), bool(extra)) for kind, driven, extra in chain)
+    joints = tuple(
+        Letter(known[kind], bool(actuated), bool(extra)) for kind, actuated, extra in chain
+    )
     group = LegGroup(count, joints, PLATFORM[last])
-    if group.freedoms > MOST_FREEDOMS:
+    if group.dofs > MOST_DOFS:
         raise _fault(
-            f"{group.freedoms} freedoms in {show(part)}",
-            f"at most {MOST_FREEDOMS} before the platform joint; longer chains are written by hand",
+            f"{group.dofs} degrees of freedom in {show(part)}",
+            f"at most {MOST_DOFS} before the platform joint; longer chains are written by hand",
         )
     return group
 

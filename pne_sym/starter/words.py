@@ -52,7 +52,7 @@ HOME = (
 def joint_comment(text: str, fields: dict[str, object]) -> list[str]:
     """Comment lines of a joint."""
     if fields.get("actuated"):
-        text += " Driven."
+        text += " Actuated."
     if fields.get("extra"):
-        text += " A freedom marked extra is a coordinate of its own, appended to X."
+        text += " A degree of freedom marked extra is a coordinate of its own, appended to X."
     return textwrap.wrap(text, 96, initial_indent="# ", subsequent_indent="# ")

@@ -16,7 +16,7 @@ from pne_sym.model.legs import is_plane
 from pne_sym.model.manipulator import Manipulator, Space
 from pne_sym.model.names import read_name
 from pne_sym.model.reader import from_text
-from pne_sym.starter.drives import check_drives
+from pne_sym.starter.actuators import check_actuators
 from pne_sym.starter.layout import Plan, default_space, make_plan
 from pne_sym.starter.notation import LegGroup, parse_legs
 from pne_sym.starter.place import leg_names
@@ -45,7 +45,7 @@ def write_starter(
 
     Raises:
         SpecError: the name, the architecture, the space or the points are at fault; the
-            actuators are not what the freedoms ask for; the method does not cover it; the
+            actuators are not what the degrees of freedom ask for; the method does not cover it; the
             file stands there already, or cannot be written.
     """
     where = str(path)
@@ -56,7 +56,7 @@ def write_starter(
         raise SpecError(where, "", "the file exists", "another name, or --force to replace it")
     text = starter_text(name, legs, space, geometry)
     manipulator = from_text(text, SUFFIX, where)
-    told = check_drives(manipulator, parse_legs(legs))
+    told = check_actuators(manipulator, parse_legs(legs))
     _check_derivable(manipulator)
     try:
         _write(path, text, replace=force)

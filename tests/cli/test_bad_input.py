@@ -36,7 +36,12 @@ FIELDS: list[tuple[str, str, Any, str]] = [
     ("many legs", "legs", [{}] * 129, "legs: 129 legs; expected 1 to 128 legs"),
     ("platform joint", "legs.0.platform_joint", "T", "expected one of S, R, U, rigid"),
     ("home length", "home.q", [0.5, 0.5], "home.q: 2 numbers; expected 1 numbers"),
-    ("open loop", "home.q", [2.5], "home: the loops do not close at X: legs[0] has a gap of"),
+    (
+        "open loop",
+        "home.q",
+        [2.5],
+        "home: the loops do not close at X: legs[0] has a loop-closure residual of",
+    ),
     ("name grammar", "name", "Lift Me", "name: value 'Lift Me'; expected a lower-case letter"),
     ("path as a name", "name", "../lift", "name: value '../lift'; expected a lower-case letter"),
     ("command", "name", "explain", "'explain' is a command of pne-gen"),
@@ -151,13 +156,13 @@ def warned(spec: dict[str, Any], folder: Path) -> str:
 def test_fewer_drives_than_freedoms_are_a_warning(tmp_path: Path) -> None:
     spec = planar()
     spec["legs"][1]["joints"] = {"1": {"actuated": False}}
-    assert "pair: legs: fewer drives than freedoms: 1 for 2" in warned(spec, tmp_path)
+    assert "pair: legs: fewer actuators than degrees of freedom: 1 for 2" in warned(spec, tmp_path)
 
 
 def test_a_rough_home_is_a_warning(tmp_path: Path) -> None:
     spec = planar()
     spec["home"]["q"][0][1] += 0.01
-    assert "home: taken as a rough guess (gap 0.00" in warned(spec, tmp_path)
+    assert "home: taken as a rough guess (loop-closure residual 0.00" in warned(spec, tmp_path)
 
 
 def test_an_unused_leg_type_is_a_warning(tmp_path: Path) -> None:
@@ -170,6 +175,6 @@ def test_mobility_is_told_unless_quiet(tmp_path: Path) -> None:
     (tmp_path / "pair.json").write_text(json.dumps(planar()))
     done = pne_gen("pair.json", "--out", "out", cwd=tmp_path)
     assert done.stdout.partition("\n")[2] == (
-        "  2 degrees of freedom at home, 2 drives, 0 constraints, 0 extra coordinates; "
+        "  2 degrees of freedom at home, 2 actuators, 0 constraints, 0 extra coordinates; "
         "section 3 of the paper: ordinary (3.1)\n"
     )

@@ -147,7 +147,7 @@ def test_list_is_a_table_on_a_terminal() -> None:
     code, shown = on_a_terminal("list", COLUMNS="150")
     head, *lines = shown.splitlines()
     assert code == 0
-    assert head.split() == ["name", "freedoms", "actuators", "legs", "title"]
+    assert head.split() == ["name", "DOF", "actuators", "legs", "title"]
     assert len(lines) == len(pne_sym.manipulators.names())
     for column in head.split():
         place = head.index(column)

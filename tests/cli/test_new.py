@@ -14,11 +14,11 @@ def test_writes_a_specification_that_can_be_generated(tmp_path: Path) -> None:
     done = pne_gen("new", "my_robot.toml", "--legs", "3-RPR", cwd=tmp_path, real=True)
     assert (done.returncode, done.stderr) == (0, "")
     told, following = done.stdout.splitlines()
-    assert told.startswith("wrote my_robot.toml: 3 degrees of freedom at home, 3 drives")
+    assert told.startswith("wrote my_robot.toml: 3 degrees of freedom at home, 3 actuators")
     assert following == "next: edit it, then pne-gen my_robot.toml --out generated/"
     done = pne_gen("my_robot.toml", "--out", "generated", cwd=tmp_path, real=True)
     assert (done.returncode, done.stderr) == (0, "")
-    assert "  3 degrees of freedom at home, 3 drives, 0 constraints" in done.stdout
+    assert "  3 degrees of freedom at home, 3 actuators, 0 constraints" in done.stdout
     assert (tmp_path / "generated/my_robot/my_robot.py").is_file()
 
 

@@ -18,7 +18,7 @@ from pne_sym.drawing.paper import HEIGHT, WIDTH, rendered
 from pne_sym.drawing.scene import scene_of
 from pne_sym.drawing.shapes import Picture
 from pne_sym.drawing.spatial import spatial_picture
-from pne_sym.drawing.style import DRIVEN, EXTRA
+from pne_sym.drawing.style import ACTUATED, EXTRA
 from pne_sym.drawing.view import view_from
 from pne_sym.generation import InputError
 from pne_sym.model.manipulator import IDENTITY3, Manipulator
@@ -45,7 +45,7 @@ def test_every_manipulator_of_the_catalogue(name: str, tmp_path: Path) -> None:
     picture = drawing.picture(model)
     numbers = [label.text for label in picture.labels if label.balloon]
     assert numbers == [str(k + 1) for k in range(len(model.legs))]
-    assert DRIVEN in fills(picture)
+    assert ACTUATED in fills(picture)
     extra = any(joint.extra for leg in model.legs for joint in leg.joints)
     assert extra == any(shape.edge == EXTRA for shape in picture.shapes)
     assert all(np.isfinite(shape.points).all() for shape in picture.shapes)

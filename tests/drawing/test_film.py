@@ -15,7 +15,7 @@ import pne_sym
 from pne_sym import drawing, manipulators
 from pne_sym.drawing.paper import layout
 from pne_sym.drawing.shapes import Picture
-from pne_sym.drawing.style import BASE, DRIVEN, GROUND
+from pne_sym.drawing.style import ACTUATED, BASE, GROUND
 from pne_sym.generation import InputError
 from pne_sym.writer import OutputError
 
@@ -57,7 +57,7 @@ def test_rails_have_one_length_and_carriages_move_on_them(name: str) -> None:
 
     for frame in frames:
         np.testing.assert_allclose(rails(frame), rails(frames[0]), atol=1e-9)
-    places = [shapes(frame, DRIVEN)[0].mean(axis=0) for frame in frames]
+    places = [shapes(frame, ACTUATED)[0].mean(axis=0) for frame in frames]
     assert float(np.ptp(places, axis=0).max()) > 0.01
 
 

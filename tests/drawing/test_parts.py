@@ -68,7 +68,7 @@ def test_driven_and_extra_joints_are_known() -> None:
     parts = scene("planar_redundant").legs[0].parts
     slide = parts[0]
     assert isinstance(slide, Slide)
-    assert slide.driven
+    assert slide.actuated
     assert slide.extra
     assert slide.grounded
 

@@ -70,7 +70,7 @@ def test_the_branch_is_that_of_the_generated_inverse_kinematics(name: str) -> No
         expected = namespace["inverse_kinematics"](found.X)
         np.testing.assert_allclose(np.cos(found.q - expected), 1.0, atol=1e-9)
         loops = Loops(model.space, model.legs, model.fixed_centre)
-        assert max(loops.gaps(found.X, expected)) < CLOSED
+        assert max(loops.residuals(found.X, expected)) < CLOSED
 
 
 def test_a_first_guess_chooses_the_assembly() -> None:

@@ -66,8 +66,8 @@ def test_known_mobility(name: str) -> None:
         warnings.simplefilter("error", SpecWarning)
         found = check_mobility(manipulators.load(name))
     assert (
-        found.freedoms,
-        found.drives,
+        found.dofs,
+        found.actuators,
         found.constraints,
         found.extra,
         found.passive,
@@ -75,7 +75,7 @@ def test_known_mobility(name: str) -> None:
     ) == KNOWN[name]
     assert found.singular_legs == ()
     assert found.overconstrained == 0
-    assert found.undriven == found.passive
+    assert found.unheld == found.passive
 
 
 @pytest.mark.parametrize("name", KNOWN)
@@ -93,7 +93,7 @@ def test_freedoms_by_the_oracle(name: str) -> None:
         rows.append(row)
     values = np.linalg.svd(np.vstack(rows), compute_uv=False)
     freedoms = basis.shape[1] + q.size - int(np.sum(values > 1e-6 * values[0]))
-    assert mobility(manipulator).freedoms == freedoms
+    assert mobility(manipulator).dofs == freedoms
 
 
 @pytest.mark.parametrize("name", ["tricept", "tripod_3upu", "stewart", "planar_mixed", "delta"])
@@ -114,9 +114,9 @@ def without_drives(manipulator: Manipulator) -> Manipulator:
 
 
 def test_fewer_drives_than_freedoms_are_a_warning() -> None:
-    with pytest.warns(SpecWarning, match="fewer drives than freedoms: 0 for 3"):
+    with pytest.warns(SpecWarning, match="fewer actuators than degrees of freedom: 0 for 3"):
         found = check_mobility(without_drives(manipulators.load("planar_3rpr")))
-    assert (found.drives, found.undriven) == (0, 3)
+    assert (found.actuators, found.unheld) == (0, 3)
 
 
 def test_dependent_drives_are_a_warning() -> None:
@@ -124,7 +124,7 @@ def test_dependent_drives_are_a_warning() -> None:
     manipulator = manipulators.load("planar_3rpr")
     legs = tuple(replace(leg, platform_point=(0.0, 0.0, 0.0)) for leg in manipulator.legs)
     same = replace(manipulator, legs=legs)
-    with pytest.warns(SpecWarning, match="all drives held, the mechanism can move at home"):
+    with pytest.warns(SpecWarning, match="all actuators held, the mechanism can move at home"):
         check_mobility(same)
 
 
@@ -137,7 +137,7 @@ def test_a_stretched_leg_is_singular() -> None:
 
 def test_one_line_for_people() -> None:
     assert str(mobility(manipulators.load("tripod_3rps"))) == (
-        "3 degrees of freedom at home, 3 drives, 3 constraints, 0 extra coordinates; "
+        "3 degrees of freedom at home, 3 actuators, 3 constraints, 0 extra coordinates; "
         "section 3 of the paper: constrained: legs that restrict the platform (3.7)"
     )
     assert "6 extra coordinates (6 passive)" in str(mobility(manipulators.load("stewart_sps")))
@@ -147,7 +147,7 @@ def test_passive_freedoms_do_not_hide_redundancy() -> None:
     """Four driven legs for three freedoms of the platform, each with a passive roller."""
     rollers = mechanism("planar", ["Rz Px* Rz+ | R"] * 4, np.random.default_rng(1))
     found = mobility(rollers)
-    assert (found.freedoms, found.drives, found.passive) == (7, 4, 4)
+    assert (found.dofs, found.actuators, found.passive) == (7, 4, 4)
     assert found.cases == ("3.3", "3.6")
 
 
@@ -183,5 +183,5 @@ def test_two_crossed_guides_do_not_move() -> None:
 
 @pytest.mark.parametrize("name", ["delta", "stewart"])
 def test_a_mechanism_without_drives_is_refused(name: str) -> None:
-    with pytest.raises(SpecError, match="no joint is driven; expected actuated = true"):
+    with pytest.raises(SpecError, match="no joint is actuated; expected actuated = true"):
         derive(without_drives(manipulators.load(name)))

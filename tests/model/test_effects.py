@@ -138,7 +138,9 @@ def test_home_within_limits(between: tuple[float, float], fits: bool) -> None:
     if fits:
         from_mapping(form, "spec")
         return
-    with pytest.raises(SpecError, match=r"home: home.q has 0.5 m at freedom 0 of legs\[0\]"):
+    with pytest.raises(
+        SpecError, match=r"home: home.q has 0.5 m at degree of freedom 0 of legs\[0\]"
+    ):
         from_mapping(form, "spec")
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from pne_sym import manipulators
 from pne_sym.model.assembly import all_closures, distance
-from pne_sym.model.closure import leg_gap
+from pne_sym.model.closure import leg_residual
 from pne_sym.model.errors import SpecError, SpecNote, SpecWarning
 from pne_sym.model.kinematics import pose_at, rotation_about
 from pne_sym.model.loops import Loops
@@ -38,7 +38,7 @@ def form_of(name: str) -> Any:
 
 def gap(m: Manipulator) -> float:
     loops = Loops(m.space, m.legs, m.fixed_centre)
-    return max(loops.gaps(np.array(m.home.X), np.array(m.home.q)))
+    return max(loops.residuals(np.array(m.home.X), np.array(m.home.q)))
 
 
 def read_rough(form: Any) -> tuple[Manipulator, str]:
@@ -71,7 +71,7 @@ def test_a_rough_guess_is_solved_for(name: str) -> None:
     for i, fixed in enumerate(extra):
         form["home"]["q"][i] += 0.0 if fixed else rng.uniform(-0.03, 0.03)
     solved, message = read_rough(form)
-    assert "rough.json: home: taken as a rough guess (gap 0.0" in message
+    assert "rough.json: home: taken as a rough guess (loop-closure residual 0.0" in message
     assert gap(solved) < 1e-12
     np.testing.assert_allclose(solved.home.q, manipulators.load(name).home.q, atol=1e-9)
 
@@ -89,7 +89,10 @@ def test_a_pose_off_the_constraints_gives_way(name: str) -> None:
 def test_a_home_out_of_reach_is_refused() -> None:
     form = form_of("hexapod_6rus")
     form["home"]["X"][2] = 3.0
-    with pytest.raises(SpecError, match=r"home: the loops do not close at X: legs\[\d\] has a gap"):
+    with pytest.raises(
+        SpecError,
+        match=r"home: the loops do not close at X: legs\[\d\] has a loop-closure residual",
+    ):
         from_mapping(form, "far.json")
 
 
@@ -135,7 +138,7 @@ def test_all_closures_of_a_leg(name: str, count: int) -> None:
         assert len(found) == count
         assert min(distance(leg, np.array(m.home.q[s]), q) for q in found) < 1e-9
         for k, q in enumerate(found):
-            assert np.abs(leg_gap(leg, q, pose)[0]).max() < 1e-12
+            assert np.abs(leg_residual(leg, q, pose)[0]).max() < 1e-12
             assert all(distance(leg, q, other) > 0.01 for other in found[:k])
 
 
@@ -254,7 +257,7 @@ def test_a_gap_between_axes_is_an_angle(kind: str, failing: str, angle: float) -
         joint = replace(given, axis_platform=tuple(axis.tolist()))
     loops = Loops(m.space, (replace(leg, platform_joint=joint),), None)
     widest = str(loops.widest(np.array(m.home.X), q))
-    assert widest.startswith(f"legs[0] has a gap of {angle:.3g} rad: ")
+    assert widest.startswith(f"legs[0] has a loop-closure residual of {angle:.3g} rad: ")
     assert failing in widest
 
 
@@ -264,7 +267,7 @@ def test_a_home_whose_axes_are_not_perpendicular_is_refused_in_radians() -> None
     leg["platform_joint"]["axis_platform"] = [0.0, 0.0, 1.0]
     with pytest.raises(SpecError) as refused:
         from_mapping(form, "skew.json")
-    assert "legs[2] has a gap of " in str(refused.value)
+    assert "legs[2] has a loop-closure residual of " in str(refused.value)
     assert " rad: the axes of its platform joint are not perpendicular" in str(refused.value)
 
 
@@ -313,9 +316,9 @@ def test_jacobians_of_the_gap(leg: Leg) -> None:
     q, h = np.linspace(0.2, 0.9, len(leg.joints)), 1e-6
     X = np.array([0.1, -0.2, 0.6, 0.0, 0.0, 0.0, 1.0])
     pose = pose_at(Space.SPATIAL, X.tolist(), None)
-    _, by_q, by_twist = leg_gap(leg, q, pose)
+    _, by_q, by_twist = leg_residual(leg, q, pose)
     for j, step in enumerate(np.eye(len(q)) * h):
-        plus, minus = leg_gap(leg, q + step, pose)[0], leg_gap(leg, q - step, pose)[0]
+        plus, minus = leg_residual(leg, q + step, pose)[0], leg_residual(leg, q - step, pose)[0]
         np.testing.assert_allclose((plus - minus) / (2 * h), by_q[:, j], atol=1e-8)
     for k in range(6):
         plus, minus = (_gap_of_moved(leg, q, X, k, s * h) for s in (1, -1))
@@ -329,4 +332,4 @@ def _gap_of_moved(leg: Leg, q: Any, X: Any, k: int, h: float) -> Any:
     else:
         moved[k] = math.sin(h / 2)
         moved[6] = math.cos(h / 2)
-    return leg_gap(leg, q, pose_at(Space.SPATIAL, moved.tolist(), None))[0]
+    return leg_residual(leg, q, pose_at(Space.SPATIAL, moved.tolist(), None))[0]

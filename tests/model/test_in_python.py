@@ -77,5 +77,5 @@ def test_too_few_drives_are_a_warning(tmp_path: Path) -> None:
     with pytest.warns(SpecWarning) as told:
         pne_sym.generate(replace(PAIR, legs=(*legs, *PAIR.legs[1:])), tmp_path)
     first, second = (str(each.message) for each in told)
-    assert "fewer drives than freedoms: 1 for 2" in first
+    assert "fewer actuators than degrees of freedom: 1 for 2" in first
     assert "inverse_dynamics, leg_reactions: NaN at every state" in second

@@ -88,7 +88,7 @@ SPATIAL: list[tuple[str, Any, str]] = [
     (
         "legs.0.joints.0",
         {"kind": "U", "axes": ["z", "y"], "actuated": True},
-        "a list of 2 values true or false, one for each freedom",
+        "a list of 2 values true or false, one for each degree of freedom",
     ),
     ("legs.0.joints", [{"kind": "P", "axis": "z"}] * 13, "13 joints; expected 1 to 12 joints"),
     # platform joints
@@ -117,7 +117,11 @@ SPATIAL: list[tuple[str, Any, str]] = [
     ("home.q", [0.5, 0.5], "home.q: 2 numbers; expected 1 numbers: one for each joint"),
     ("home.q", [[0.5], [0.5]], "home.q: 2 lists; expected 1 lists, one for each leg"),
     ("home.q", [[0.5, 0.5]], "home.q[0]: 2 numbers; expected 1 numbers, one for each joint"),
-    ("home.q", [1.5], "home: the loops do not close at X: legs[0] has a gap of 1 m; expected"),
+    (
+        "home.q",
+        [1.5],
+        "home: the loops do not close at X: legs[0] has a loop-closure residual of 1 m; expected",
+    ),
     # leg types
     ("legs.0.type", "Lift", "legs[0].type: leg type named 'Lift'; expected a lower-case letter"),
     ("leg_types", {"Bad Name": {}}, "leg type named 'Bad Name'; expected a lower-case letter"),

@@ -30,12 +30,12 @@ from tests.random.drawing import describe, draw
 from tests.random.judging import TOLERANCE, Verdict, judge
 
 MECHANICAL = (
-    r"\d+ freedoms where the platform joint leaves \d+ to be determined",
+    r"\d+ degrees of freedom where the platform joint leaves \d+ to be determined",
     r"the leg is singular at home",
     r"two solutions of the inverse kinematics meet at home",
     r"overconstrained: of the \d+ constraints",
     r"the legs hold the platform: nothing moves at home",
-    r"no joint is driven",
+    r"no joint is actuated",
 )
 """Reasons for which a mechanism is outside the method."""
 

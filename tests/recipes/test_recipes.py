@@ -128,7 +128,7 @@ def test_a_joint_kind(copy: Path) -> None:
         run(copy, *PNE_GEN, name, "--target", "numpy", "--out", "generated_here")
     run(copy, "-c", blocks[-1].text)
     report = (copy / "generated_here/hexapod_6uns/hexapod_6uns.md").read_text(encoding="utf-8")
-    assert "| 3 | nut | driven |" in report
+    assert "| 3 | nut | actuated |" in report
     told = run(copy, *PNE_GEN, "new", "mine.toml", "--legs", "6-UNS")
     assert (copy / "mine.toml").is_file(), told
 

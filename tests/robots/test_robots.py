@@ -15,7 +15,7 @@ import pytest
 
 from pne_sym.cli.listing import architecture
 from pne_sym.mechanics.derive import derive
-from pne_sym.mechanics.mobility import drive_quality, mobility, motions_at_home
+from pne_sym.mechanics.mobility import actuation_quality, mobility, motions_at_home
 from pne_sym.model.errors import SpecNote
 from pne_sym.model.kinematics import TASK_SPACES, Array
 from pne_sym.model.loops import Loops
@@ -27,7 +27,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "robots.md").read_text(encoding="utf-8")
 ROW = re.compile(
     r"^\| \[(?P<title>[^]]+)\]\((?P<path>\S+)\) \| (?P<legs>\S+) \| (?P<space>\w+) "
-    r"\| (?P<freedoms>\d) \| (?P<actuators>\d) \| (?P<constraints>\d) \|",
+    r"\| (?P<dofs>\d) \| (?P<actuators>\d) \| (?P<constraints>\d) \|",
     re.MULTILINE,
 )
 ROWS = {Path(row["path"]).stem: row for row in ROW.finditer(PAGE)}
@@ -62,19 +62,19 @@ def test_what_the_page_says(name: str) -> None:
     found = mobility(m)
     assert architecture(m) == row["legs"]
     assert str(m.space) == row["space"]
-    assert [found.freedoms, found.drives, found.constraints] == [
-        int(row[part]) for part in ("freedoms", "actuators", "constraints")
+    assert [found.dofs, found.actuators, found.constraints] == [
+        int(row[part]) for part in ("dofs", "actuators", "constraints")
     ]
     assert found.overconstrained == OVERCONSTRAINED.get(name, 0)
-    assert (found.undriven, found.singular_legs) == (0, ())
-    assert drive_quality(m) > 0.01
+    assert (found.unheld, found.singular_legs) == (0, ())
+    assert actuation_quality(m) > 0.01
 
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_home_is_found_and_closed(name: str) -> None:
     m = robot(name)
     loops = Loops(m.space, m.legs, m.fixed_centre)
-    assert max(loops.gaps(np.array(m.home.X), np.array(m.home.q))) < 1e-12
+    assert max(loops.residuals(np.array(m.home.X), np.array(m.home.q))) < 1e-12
 
 
 @pytest.mark.parametrize("name", ["orthoglide", "tripteron", "agile_eye"])
@@ -115,14 +115,14 @@ def test_generated(name: str) -> None:
     m = robot(name)
     made = module(m)
     X = np.array(m.home.X)
-    V = motions_at_home(m)[: made.NV] @ np.ones(mobility(m).freedoms)
+    V = motions_at_home(m)[: made.NV] @ np.ones(mobility(m).dofs)
     np.testing.assert_allclose(made.H(X).T @ V, rates_by_twist(m) @ V, atol=1e-9)
     tau = np.linspace(1.0, 2.0, made.NU)
     A, *_ = _parts(made.forward_dynamics(X, V, tau))
     found, *reactions = _parts(made.inverse_dynamics(X, V, A))
     B, *_ = _parts(made.forward_dynamics(X, V, found))
     np.testing.assert_allclose(B, A, atol=1e-7)
-    if mobility(m).freedoms == made.NU:
+    if mobility(m).dofs == made.NU:
         np.testing.assert_allclose(found, tau, atol=1e-6)
     assert len(reactions) == (made.NC > 0)
 

@@ -10,7 +10,7 @@ from pne_sym.starter import parse_legs, starter_text
 
 def test_counts_letters_and_platform_joint() -> None:
     (group,) = parse_legs("6-UPS")
-    assert (group.count, group.plain, group.platform.letter, group.freedoms) == (6, "UPS", "S", 3)
+    assert (group.count, group.plain, group.platform.letter, group.dofs) == (6, "UPS", "S", 3)
     assert parse_legs("6-ups") == parse_legs("6-UPS")
 
 
@@ -21,7 +21,12 @@ def test_equal_neighbours_become_one_group() -> None:
 
 def test_marks() -> None:
     first, second = parse_legs("3-_RP*S")[0].letters
-    assert (first.driven, first.extra, second.driven, second.extra) == (True, False, False, True)
+    assert (first.actuated, first.extra, second.actuated, second.extra) == (
+        True,
+        False,
+        False,
+        True,
+    )
 
 
 @pytest.mark.parametrize(
@@ -37,7 +42,7 @@ def test_marks() -> None:
         ("64-UPS+65-RUS", "129 legs; expected 1 to 128 legs"),
         ("99999-UPS", "value '99999-UPS'; expected COUNT-LETTERS"),
         ("6-UP_S", "a mark at the platform joint"),
-        ("1-RRRRRRRRS", "8 freedoms in '1-RRRRRRRRS'; expected at most 7"),
+        ("1-RRRRRRRRS", "8 degrees of freedom in '1-RRRRRRRRS'; expected at most 7"),
         ("6-UPS+", "value ''; expected COUNT-LETTERS"),
         ("6-U__PS", "expected COUNT-LETTERS"),
         ("6-UPS\n", "3-RPR"),
@@ -65,7 +70,7 @@ def test_faults(text: str, message: str) -> None:
         ("6-UPS", "planar", "joint 'U' of UPS leaves the plane"),
         ("3-RPS", "planar", ""),
         ("1-RRRR*S", "spatial", ""),
-        ("3-RRRR*RS", "spatial", "4 freedoms of a RRRRRS leg that are not marked extra"),
+        ("3-RRRR*RS", "spatial", "4 degrees of freedom of a RRRRRS leg that are not marked extra"),
     ],
 )
 def test_space_faults(legs: str, space: str, message: str) -> None:

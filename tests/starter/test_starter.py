@@ -76,9 +76,9 @@ def test_loads_without_a_warning_and_has_the_known_mobility(
         warnings.simplefilter("error", SpecWarning)
         manipulator = from_text(starter_text("my_robot", legs, space), ".toml", "my_robot.toml")
     found = mobility(manipulator)
-    assert [found.freedoms, found.drives, found.constraints, found.extra] == expected
+    assert [found.dofs, found.actuators, found.constraints, found.extra] == expected
     assert found.singular_legs == ()
-    assert found.undriven == found.passive
+    assert found.unheld == found.passive
 
 
 @pytest.mark.slow
@@ -223,7 +223,7 @@ def test_points_on_circles(
 ) -> None:
     rings = Rings((0.6, 0.2), (0.0, 120.0, 240.0), (10.0, 130.0, 250.0), height)
     manipulator = from_text(starter_text("mine", legs, space, rings), ".toml", "mine.toml")
-    assert mobility(manipulator).freedoms == mobility(manipulator).drives == freedoms
+    assert mobility(manipulator).dofs == mobility(manipulator).actuators == freedoms
     radii = [np.hypot(*leg.base_point[:2]) for leg in manipulator.legs[:3]]
     np.testing.assert_allclose(radii, 0.6, atol=1e-12)
     angles = [math.degrees(math.atan2(*leg.platform_point[1::-1])) for leg in manipulator.legs[:3]]

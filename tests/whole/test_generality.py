@@ -58,7 +58,7 @@ ACCEPTED: dict[str, tuple[str, list[str]]] = {
 }
 """Space and platform joint -> legs."""
 
-_TOO_MANY = "{} freedoms where the platform joint leaves {} to be determined"
+_TOO_MANY = "{} degrees of freedom where the platform joint leaves {} to be determined"
 _PINNED = r"platform_joint.kind: value '{}'; expected R or S: in the plane the legs are pinned"
 
 REFUSED: dict[str, tuple[str, list[str], str]] = {

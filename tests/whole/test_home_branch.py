@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pne_sym.mechanics.derive import derive
-from pne_sym.model.closure import leg_gap
+from pne_sym.model.closure import leg_residual
 from pne_sym.model.kinematics import TASK_SPACES, base_of, chain_pose, displaced, pose_at
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.evaluate import prepare
@@ -149,7 +149,7 @@ def test_the_other_closure_is_refused(name: str) -> None:
         unknown = [k for k, joint in enumerate(leg.joints) if not joint.extra]
         other = q.copy()
         other[where] = _elbow_over(leg, q[where], unknown)
-        assert np.abs(leg_gap(leg, other[where], pose)[0]).max() < 1e-9
+        assert np.abs(leg_residual(leg, other[where], pose)[0]).max() < 1e-9
         assert turns_apart(other, q).max() > 0.1
         assert np.isnan(m.inverse_kinematics(X, q0=other)).all()
         assert np.isnan(m.M(X, q0=other)).all()

@@ -83,7 +83,7 @@ def with_parameters(bundle: Bundle, monkeypatch: pytest.MonkeyPatch, **values: A
     monkeypatch.setattr(ParameterTable, "values", changed)
 
 
-@pytest.mark.filterwarnings("ignore:planar_3rpr. legs. all drives held")
+@pytest.mark.filterwarnings("ignore:planar_3rpr. legs. all actuators held")
 def test_a_leg_that_is_singular_at_home_is_refused(tmp_path: Path) -> None:
     """Its freedoms are independent, its guards fail all the same: exit 0 and NaN before."""
     with pytest.raises(SpecError) as told:

@@ -43,7 +43,7 @@ ARRAYS = (
     (
         "constraints",
         r"\boldsymbol\chi(X)",
-        "By how much the legs miss the platform, zero where it can be (Eq. 37)",
+        "Loop-closure residuals, zero where the platform can be (Eq. 37)",
     ),
     (
         "constraint_bias",
@@ -79,13 +79,13 @@ def block_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[Statemen
 def _partition(bundle: Bundle) -> Statement:
     """The blocks of Eqs. 6 and 7 by their names."""
     joints = [bundle.manipulator.legs[i].joints[j] for i, j in bundle.coordinates.extras]
-    driven = {joint.actuated for joint in joints}
+    actuated = {joint.actuated for joint in joints}
     equations = " and ".join(
         words
         for kind, words in ((True, "Eq. 6, the paper's θ"), (False, "Eq. 7, the paper's φ"))
-        if kind in driven
+        if kind in actuated
     )
-    drives = r"\mathbf H_y" if True in driven else r"\mathbf 0"
+    actuators = r"\mathbf H_y" if True in actuated else r"\mathbf 0"
     return Statement(
         f"**Partition.** $`x`$ marks the platform's rows and columns, $`y`$ those of the extra "
         f"coordinates ({equations}), which come after them:",
@@ -94,7 +94,7 @@ def _partition(bundle: Bundle) -> Statement:
             r"\mathbf M_{yx} & \mathbf M_{yy}\end{bmatrix}",
             r"\begin{bmatrix}\mathbf A_x \\ \ddot{\mathbf y}\end{bmatrix}",
             r"+ \begin{bmatrix}\mathbf Z_x \\ \mathbf Z_y\end{bmatrix}",
-            rf"= \begin{{bmatrix}}\mathbf H_x \\ {drives}\end{{bmatrix}}\boldsymbol\tau",
+            rf"= \begin{{bmatrix}}\mathbf H_x \\ {actuators}\end{{bmatrix}}\boldsymbol\tau",
             r"+ \begin{bmatrix}\mathbf F_{\mathrm{ext}} \\ \mathbf 0\end{bmatrix}",
         ),
     )

@@ -76,19 +76,19 @@ def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[State
 
 def _passive_statements(coordinates: Coordinates) -> Iterator[Statement]:
     """What actuators leave to themselves: by the generic rank of [H Hk]."""
-    a, drives = coordinates.actuation, _drives(coordinates)
+    a, actuators = coordinates.actuation, _actuators(coordinates)
     size = coordinates.sizes["NV"]
     if not a.is_determined:
         yield Statement(
-            f"**Too few actuators**: for almost all parameters and poses, {drives} cannot hold all "
-            "rows that are to hold. No forces give any acceleration; inverse dynamics is NaN.",
+            f"**Too few actuators**: for almost all parameters and poses, {actuators} cannot hold "
+            "all rows that are to hold. No forces give any acceleration; inverse dynamics is NaN.",
             (),
         )
     elif a.passive and not a.idle:
         yield Statement(
             "**Passive extra coordinates** are held by the actuators of other joints: "
-            f"{drives} has rank {size} for almost all parameters and poses, so that all rows are "
-            "solved, and any of their accelerations has forces.",
+            f"{actuators} has rank {size} for almost all parameters and poses, so that all rows "
+            "are solved, and any of their accelerations has forces.",
             (),
         )
     elif a.passive and not a.is_coupled:
@@ -103,7 +103,7 @@ def _passive_statements(coordinates: Coordinates) -> Iterator[Statement]:
 
 def _coupled_statements(coordinates: Coordinates) -> Iterator[Statement]:
     """Passive extra coordinates that actuators act on, but do not hold."""
-    a, drives = coordinates.actuation, _drives(coordinates)
+    a, actuators = coordinates.actuation, _actuators(coordinates)
     unique = len(a.passive) == a.idle
     k = r"\mathbf H & \mathbf H_k" if coordinates.sizes["NC"] else r"\mathbf H"
     gap = rf"{_N}^{{\mathsf T}}\,(\mathbf M\,\mathbf A + \mathbf Z - {_W})"
@@ -113,7 +113,7 @@ def _coupled_statements(coordinates: Coordinates) -> Iterator[Statement]:
         rf"\qquad {_N}^{{\mathsf T}}\,\mathbf M_{{\cdot y}}\,{change} = -{gap}",
     )
     yield Statement(
-        f"**Passive extra coordinates**: {drives} acts on their rows too, but has rank "
+        f"**Passive extra coordinates**: {actuators} acts on their rows too, but has rank "
         f"{a.rank} of {coordinates.sizes['NV']} for almost all parameters and poses. With columns "
         f"$`{_N}`$ that span what it leaves out, an acceleration has forces only where",
         (
@@ -140,7 +140,7 @@ def _coupled_statements(coordinates: Coordinates) -> Iterator[Statement]:
     )
 
 
-def _drives(coordinates: Coordinates) -> str:
+def _actuators(coordinates: Coordinates) -> str:
     return "[H H_k]" if coordinates.sizes["NC"] else "H"
 
 
@@ -173,7 +173,7 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
         )
     lines += [
         (
-            f"**Singular actuation**: {_drives(bundle.coordinates)} has {_lacking(bundle)}; "
+            f"**Singular actuation**: {_actuators(bundle.coordinates)} has {_lacking(bundle)}; "
             "inverse dynamics needs that, M, Z and H do not."
         ),
         "**Singular masses**: "
@@ -191,7 +191,7 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
 
 
 def _lacking(bundle: Bundle) -> str:
-    """The rank that is missing where drives are singular."""
+    """The rank that is missing where actuators are singular."""
     a = bundle.coordinates.actuation
     return f"not the rank {a.rank} of other poses" if a.passive and a.idle else "no full rank"
 

@@ -24,17 +24,17 @@ def leg_force_statements(
     force = next((o.value for o in _outputs(derivation, leg_type, "leg_force", 0)), None)
     if force is None:
         return
-    drives = tuple(_applied(derivation, leg_type, printer, 0))
+    actuators = tuple(_applied(derivation, leg_type, printer, 0))
     constrained = _outputs(derivation, leg_type, "constraint_direction", 0)
     others = " and the constraints" if constrained else ""
     along = ", ".join(
-        inline(printer.doprint(o.value)) for o in _outputs(derivation, leg_type, "drive", 0)
+        inline(printer.doprint(o.value)) for o in _outputs(derivation, leg_type, "actuator", 0)
     )
     columns = f" (h is {along})" if along else ""
     yield Statement(
         f"**The leg's force on the platform, Eq. 3.** What the actuators{others} give{columns}, "
         "and a rest that inverse dynamics evaluates as a number, accelerations included:",
-        display(_FORCE, [(*drives, *printer.terms(force))]),
+        display(_FORCE, [(*actuators, *printer.terms(force))]),
     )
     closed = closed_force(derivation, collected, leg_type, printer)
     if closed:
@@ -63,8 +63,8 @@ def closed_force(
     form = closed_form(derivation, collected, leg_type, force) if force is not None else None
     if form is None:
         return ()
-    drives = _applied(derivation, leg_type, printer, 0)
-    return display(_FORCE, [(*drives, *collected_terms(form, printer))])
+    actuators = _applied(derivation, leg_type, printer, 0)
+    return display(_FORCE, [(*actuators, *collected_terms(form, printer))])
 
 
 def _moment(
@@ -72,11 +72,11 @@ def _moment(
 ) -> Iterator[Statement]:
     """The moment that the leg transmits, where it does."""
     for output in _outputs(derivation, leg_type, "leg_force", 3):
-        drives = tuple(_applied(derivation, leg_type, printer, 3))
-        rows = [(*drives, *printer.terms(output.value))]
+        actuators = tuple(_applied(derivation, leg_type, printer, 3))
+        rows = [(*actuators, *printer.terms(output.value))]
         form = closed_form(derivation, collected, leg_type, output.value)
         if form is not None:
-            rows.append((*drives, *collected_terms(form, printer)))
+            rows.append((*actuators, *collected_terms(form, printer)))
         yield Statement(
             "**The leg's moment on the platform**, which its platform joint transmits, likewise:",
             display(_MOMENT, rows),
@@ -87,7 +87,7 @@ def _applied(
     derivation: Derivation, leg_type: str, printer: LatexPrinter, first: int
 ) -> Iterator[Term]:
     """What actuators and constraints give: w tau, n lambda."""
-    for output in _outputs(derivation, leg_type, "drive", first):
+    for output in _outputs(derivation, leg_type, "actuator", first):
         joint = _joint_of(derivation, output)
         effort = rf"\tau_{joint}" if joint else r"\tau"
         yield Term(rf"{printer.factor(output.value)}\,{effort}")

@@ -53,11 +53,11 @@ def cases(bundle: Bundle) -> tuple[str, ...]:
     """The cases of section 3 of the paper that apply."""
     sizes, manipulator = bundle.coordinates.sizes, bundle.manipulator
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
-    drives = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
+    actuators = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
     spare = [
         sum(joint.actuated and joint.extra for joint in leg.joints) for leg in manipulator.legs
     ]
-    freedoms = sizes["NV"] - sizes["NC"]
+    dofs = sizes["NV"] - sizes["NC"]
     found = []
     if any(joint.extra and joint.actuated for joint in joints):
         found.append("3.5")
@@ -65,11 +65,11 @@ def cases(bundle: Bundle) -> tuple[str, ...]:
         found.append("3.6")
     if sizes["NC"]:
         found.append("3.7")
-    if len(manipulator.legs) > freedoms:
+    if len(manipulator.legs) > dofs:
         found.append("3.3")
-    if sizes["NU"] > freedoms and max(drives) > 1:
+    if sizes["NU"] > dofs and max(actuators) > 1:
         found.append("3.4")
-    elif any(n - extra > 1 for n, extra in zip(drives, spare, strict=True)):
+    elif any(n - extra > 1 for n, extra in zip(actuators, spare, strict=True)):
         found.append("3.2")
     return tuple(CASES[case] for case in (found or ["3.1"]))
 
@@ -101,7 +101,7 @@ def _order_rows(bundle: Bundle) -> Iterator[tuple[str, str]]:
         units = ", ".join(map(unit, c.constraint_units))
         yield (
             "`lambda`",
-            f"reactions along the directions that the legs leave out, leg by leg ({units})",
+            f"coefficients of the legs' constraint wrenches, leg by leg ({units})",
         )
     yield "`wrench`", f"{_listed(c.wrench)}: external force and moment on the platform"
     if any(not info.is_closed for info in bundle.derivation.leg_types):

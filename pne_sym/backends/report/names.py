@@ -10,18 +10,18 @@ from pne_sym.vector import LegSum, TensorLegSum, VectorLegSum
 
 
 def leg_title(info: LegTypeInfo) -> str:
-    """Architecture with the driven joint underlined, for Markdown text."""
+    """Architecture with the actuated joint underlined, for Markdown text."""
     return _marked(info, "<ins>", "</ins>").replace("*", r"\*") + _number(info)
 
 
 def _marked(info: LegTypeInfo, before: str, after: str) -> str:
-    text, driven = "", False
+    text, actuated = "", False
     for letter in info.title:
         if letter == "_":
-            driven = True
+            actuated = True
         else:
-            text += f"{before}{letter}{after}" if driven else letter
-            driven = False
+            text += f"{before}{letter}{after}" if actuated else letter
+            actuated = False
     return text
 
 

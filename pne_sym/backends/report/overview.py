@@ -67,7 +67,7 @@ def _meaning(derivation: Derivation, info: LegTypeInfo, printer: LatexPrinter) -
     along = [
         inline(printer.doprint(o.value))
         for o in derivation.outputs
-        if o.array == "drive" and o.leg_type == info.name and o.columns[0][1] == 0
+        if o.array == "actuator" and o.leg_type == info.name and o.columns[0][1] == 0
     ]
     units = unit_vectors(derivation, info.name)
     told = ", ".join(

@@ -14,11 +14,11 @@ LAWS: dict[Law, str] = {
     Law.NEWTON: "Newton: the forces on a body sum up to its mass times the acceleration of its "
     "centre of mass (Eq. 1).",
     Law.EULER: "Euler: the moments on a body sum up to the rate of its angular momentum (Eq. 2).",
-    Law.FREEDOM: "Only the component of the equilibrium along the freedom of a joint is kept: "
+    Law.FREEDOM: "Only the component of the equilibrium along the axis of a joint is kept: "
     "moment about the axis (R), force along it (P), both (H). Joint reactions have none "
     "(Sec. 2.2).",
-    Law.REDUCTION: "The equilibria along all freedoms of the leg, solved for the force at the "
-    "connection point (Eq. 3).",
+    Law.REDUCTION: "The equilibria along all degrees of freedom of the leg, solved for the force "
+    "at the connection point (Eq. 3).",
     Law.RULES: "The acceleration of the platform is collected by Rules I and II (Sec. 2.3, Eq. 4).",
     Law.ASSEMBLY: "Newton's and Euler's equations of the platform, with the forces of all legs "
     "(Sec. 2.4, Eq. 5).",
@@ -130,7 +130,7 @@ FUNCTIONS = {
     "inverse_kinematics": "joint displacements",
     "joint_rates": "joint rates",
     "joint_accelerations": "joint accelerations",
-    "constraints": "distances and angles by which the legs miss the platform",
+    "constraints": "loop-closure residuals along the constraint wrenches",
     "legs": "leg forces, for the leg reactions",
     "potential": "potential energy",
     "dissipation": "power that friction takes",

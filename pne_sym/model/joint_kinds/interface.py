@@ -1,7 +1,7 @@
 """What the program asks of a kind of joint.
 
-A joint with one freedom is a screw: by its displacement q its link turns about the axis by
-`turn` q and moves along it by `advance` q.  All formulas are in these two factors and in the
+A joint with one degree of freedom is a screw: by its displacement q its link turns about the axis
+by `turn` q and moves along it by `advance` q.  All formulas are in these two factors and in the
 facts below, with numbers and with symbols alike.
 """
 
@@ -16,10 +16,10 @@ Axes = tuple[str, ...]
 
 
 class WrittenJoint(Kind):
-    """A joint as specifications write it: with one freedom, or a sequence of such at one point.
+    """A joint as specifications write it: with one degree of freedom, or several at one point.
 
     Attributes:
-        sequence: letters of the freedoms that it stands for.
+        sequence: letters of the degrees of freedom that it stands for.
         slides: its link moves along an axis.
         crossed: it has a list of axes, each perpendicular to the next; else one axis.
         pitched: it has a pitch.
@@ -41,16 +41,16 @@ class WrittenJoint(Kind):
 
     @property
     def parts(self) -> tuple[JointKind, ...]:
-        """The freedoms that it stands for."""
+        """The degrees of freedom that it stands for."""
         return tuple(JointKind(letter) for letter in self.sequence)
 
-    def driven_parts(self, driven: bool) -> Sequence[bool]:
-        """Which freedoms have a drive where the notation marks the joint as driven, or not."""
-        return [driven] * len(self.parts)
+    def actuated_parts(self, actuated: bool) -> Sequence[bool]:
+        """Which degrees of freedom the notation means that marks the joint as actuated."""
+        return [actuated] * len(self.parts)
 
 
 class JointKind(WrittenJoint):
-    """A kind of joint with one freedom.
+    """A kind of joint with one degree of freedom.
 
     Attributes:
         turns: its link turns against the link before it.

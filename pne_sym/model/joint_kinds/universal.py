@@ -16,6 +16,6 @@ class Universal(WrittenJoint):
     axis_choices = (("z", "y"), ("y", "z"), ("x", "z"))
     comment = "Universal joint: two revolute axes, the cross is massless."
 
-    def driven_parts(self, driven: bool) -> Sequence[bool]:
+    def actuated_parts(self, actuated: bool) -> Sequence[bool]:
         """The second axis."""
-        return [False, driven]
+        return [False, actuated]
