@@ -28,7 +28,7 @@ Gamma_# | \Gamma_{#} ; \boldsymbol\gamma_{#}                | FREEDOM | Sec. 2.2
 
 
 class BalanceWriter:
-    """Writes what inertia, weight and the forces in the joints need along every degree of freedom."""
+    """Writes what inertia, weight and joint forces need along every degree of freedom."""
 
     def __init__(self, links: LinkWriter, found: LinkForces, forces: JointForces) -> None:
         self.book, self.g, self.motion, self.k = links.book, links.g, links.motion, links.k

@@ -29,11 +29,14 @@ from pne_sym.vector import Dot, LinearForm, ZeroTensor, ZeroVector, vector_sum
 
 _TERMS = glossary(r"""
 G      | \mathbf G ; \boldsymbol{\mathcal G} | RECIPROCITY | Sec. 2.3
-    force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+    force at the connection point that balances the leg's inertia and weight along
+    all degrees of freedom
 G_m#   | G_{m#} ; \boldsymbol{\mathcal G}_{m#} | RECIPROCITY | Sec. 2.2, joint table
-    moment along moment direction # that balances the leg's inertia and weight along all degrees of freedom
+    moment along moment direction # that balances the leg's inertia and weight along
+    all degrees of freedom
 G_m    | \mathbf G_m ; \boldsymbol{\mathcal G}_m | RECIPROCITY | Sec. 2.2, joint table
-    moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
+    moment at the connection point that balances the leg's inertia and weight along
+    all degrees of freedom
 c      | \mathbf c ; \boldsymbol{\mathcal C} | REDUCTION | Eq. 3
     leg force on the platform without actuation and without the mass at the connection point
 c_m    | \mathbf c_m ; \boldsymbol{\mathcal C}_m | REDUCTION | Eq. 3
