@@ -13,7 +13,9 @@ from pne_sym.backends.c_model import (
     parameter_fields,
     prepare_body,
 )
+from pne_sym.backends.c_parts import least_values
 from pne_sym.backends.c_public import Caller, c_functions
+from pne_sym.backends.c_sizes import count_of, sizes_of
 from pne_sym.backends.c_steps import OPERATIONS, Steps, biggest, results_of, runs_in_lanes
 from pne_sym.backends.c_support import needed
 from pne_sym.backends.c_text import Routine, wrapped
@@ -53,6 +55,8 @@ class CView:
         closures: legs whose displacements are found by iteration.
         support: operations that the texts need.
         texts: all functions.
+        sizes: name -> number.
+        least: what is not singular is larger -> name.
         lanes: number of states that run side by side.
     """
 
@@ -69,6 +73,8 @@ class CView:
     closures: tuple[CClosure, ...]
     support: str
     texts: tuple[str, ...]
+    sizes: dict[str, str]
+    least: dict[str, str]
     lanes: int = LANES
 
 
@@ -129,7 +135,16 @@ def _view(bundle: Bundle) -> CView:
         closures=closures,
         support=operators,
         texts=tuple(texts),
+        sizes=_sizes(bundle),
+        least=least_values(bundle),
     )
+
+
+def _sizes(bundle: Bundle) -> dict[str, str]:
+    """Names of sizes: those of the header by their short names, and numbers of legs."""
+    prefix = bundle.name.upper()
+    legs = {count_of(leg): str(n) for leg, n in bundle.leg_counts.items()}
+    return {n: str(k) if n == "NL" else f"{prefix}_{n}" for n, k in sizes_of(bundle).items()} | legs
 
 
 def support(bundle: Bundle, big: int) -> str:

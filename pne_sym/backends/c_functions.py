@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import prod
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_parts import Parts, vector_name
-from pne_sym.backends.c_text import Routine, comment, listing
-from pne_sym.program.count import count_function
+from pne_sym.backends.c_sizes import array_names, count_of, times
+from pne_sym.backends.c_sums import with_common_sums
+from pne_sym.backends.c_text import Routine, comment
 from pne_sym.program.ir import Block, Function
 
 LANES = 8
@@ -50,7 +50,7 @@ def function_text(bundle: Bundle, function: Function, *, lanes: bool, summed: bo
 class _FunctionWriter:
     def __init__(self, bundle: Bundle, function: Function, *, summed: bool) -> None:
         self.bundle = bundle
-        self.f = function
+        self.f = function = with_common_sums(function)
         self.name = function.name
         self.parts = Parts(bundle, function, summed=summed)
         self.before = self.parts.before()
@@ -59,11 +59,7 @@ class _FunctionWriter:
 
     def text(self, *, lanes: bool) -> FunctionText:
         """All routines, each after what it calls."""
-        n = count_function(self.f, self.bundle.leg_counts)
-        lines = comment(
-            f"---- {self.name}: {n.mul} mul, {n.add} add, {n.div} div, {n.sqrt} sqrt, "
-            f"{n.trig} trig, every leg counted ----"
-        )
+        lines = comment(f"---- {self.name} ----")
         lines += [*self.before.definition(), ""]
         for _, over, place in self.legs:
             lines += [*over.definition(), "", *place.definition(), ""]
@@ -80,7 +76,7 @@ class _FunctionWriter:
         """The parts one after another, for one state or for as many as there are lanes."""
         single = w == "1"
         body = [
-            f"clear({a}, {_times(prod(self.bundle.program.shapes[a]), w)});"
+            f"clear({a}, {times(*array_names(self.bundle, a), w)});"
             for a in self.f.arrays
             if not self.parts.is_full(a)
         ]
@@ -92,29 +88,28 @@ class _FunctionWriter:
         words = "\n".join(body)
         sizes = {"s": len(self.parts.passed), "sums": len(self.parts.sums)}
         names = [n for n, k in sizes.items() if k and f" {n}" in words]
-        buffers = [f"{n}[{_times(sizes[n], w)}]{' = {0}' * single}" for n in names]
+        # gcc's analyzer does not see that the legs set all of it
+        zero = " = {0}" * single
+        head = [f"real {n}[{times(sizes[n], w)}]{zero};" for n in names]
         for block in self.parts.legs:
-            width = f"LEGS({self.bundle.leg_counts[block.leg_type]})" if single else w
+            width = f"LEGS({count_of(block.leg_type)})" if single else w
             rows = len(block.stores) + len(self.parts.flag_rows(block))
-            terms = len(block.sums) if single else 0
+            terms = len(self.parts.sums) if single and block.sums else 0
             sizes = {f"terms_{block.leg_type}": terms, f"o_{block.leg_type}": rows}
-            # gcc's analyzer does not see that the legs set all of it
-            zero = " = {0}" * single
-            buffers += [f"{n}[{k}*{width}]{zero}" for n, k in sizes.items() if k]
+            head += [f"real {n}[{times(k, width)}]{zero};" for n, k in sizes.items() if k]
         parameters = [
             "const prepared *m",
             *(f"const real *{vector_name(v)}" for v in self.f.inputs),
             *(f"real *{a}" for a in self.f.arrays),
             "verdict *t",
         ]
-        head = listing("real ", buffers, ";") if buffers else []
         return Routine.of(
             f"{self.name}_run{'' if single else '_lanes'}", parameters, [*head, *body]
         )
 
     def _side_by_side(self, block: Block, over: Routine, place: Routine) -> list[str]:
         """The legs of one state, side by side."""
-        legs = self.bundle.leg_counts[block.leg_type]
+        legs = count_of(block.leg_type)
         given = {"w": "1", "count": f"LEGS({legs})", **self._arrays(block, single=True)}
         at = {"leg": "0", "legs": "1", "states": "0", "add": "0"}
         lines = [over.call_with(given | at)]
@@ -127,41 +122,29 @@ class _FunctionWriter:
         if not block.sums:
             return lines
         terms = f"terms_{block.leg_type}"
+        more = "" if block is next(b for b in self.parts.legs if b.sums) else "+"
         return [
             *lines,
-            f"for (size_t n = 0; n < {len(block.sums)}; ++n) {{",
-            f"    sums[{self._first(block)}n] = total({terms} + n*LEGS({legs}), {legs});",
+            f"for (size_t n = 0; n < {len(self.parts.sums)}; ++n) {{",
+            f"    sums[n] {more}= total({terms} + n*LEGS({legs}), {legs});",
             "}",
         ]
 
     def _in_turn(self, block: Block, over: Routine, place: Routine) -> list[str]:
         """One leg after another, the states side by side."""
-        legs = self.bundle.leg_counts[block.leg_type]
+        legs = count_of(block.leg_type)
         given = {"w": "LANES", "count": "LANES", **self._arrays(block, single=False)}
         at = {"legs": "0", "states": "1", "add": "1"}
-        sums = f"clear({given['terms']}, {len(block.sums)}*LANES);"
+        first = block is next((b for b in self.parts.legs if b.sums), None)
         return [
-            *([sums] if block.sums else []),
+            *([f"clear(sums, {times(len(self.parts.sums), 'LANES')});"] if first else []),
             f"for (size_t leg = 0; leg < {legs}; ++leg) {{",
             f"    {over.call_with(given | at)}",
             *([f"    {place.call_with({**given, 'first': '0'})}"] if place.body else []),
             "}",
         ]
 
-    def _first(self, block: Block) -> str:
-        """Place of the first sum of a block."""
-        first = self.parts.sums.index(str(block.sums[0][0])) if block.sums else 0
-        return f"{first} + " if first else ""
-
     def _arrays(self, block: Block, *, single: bool) -> dict[str, str]:
         """Arrays of what the legs give; states side by side are added up in place."""
-        at = self._first(block).replace(" + ", "*LANES")
-        sums = f"sums + {at}" if at else "sums"
-        return {
-            "terms": f"terms_{block.leg_type}" if single else sums,
-            "o": f"o_{block.leg_type}",
-        }
-
-
-def _times(n: int, w: str) -> str:
-    return str(n) if w == "1" else f"{n}*{w}"
+        leg = block.leg_type
+        return {"terms": f"terms_{leg}" if single else "sums", "o": f"o_{leg}"}

@@ -6,6 +6,8 @@ import math
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_parts import capacity, statements
+from pne_sym.backends.c_sizes import count_of, times
+from pne_sym.backends.c_sums import common_sums
 from pne_sym.backends.c_text import (
     PRINTER,
     c_name,
@@ -82,9 +84,9 @@ class _Preparation:
     def body(self) -> list[str]:
         """Statements that compute the prepared model from the parameters."""
         lines: list[str] = []
-        blocks = self.bundle.program.prepare
+        blocks = common_sums(self.bundle.program.prepare)
         totals = [str(target) for block in blocks for target, _ in block.sums]
-        lines += [f"real {c_name(n)} = 0;" for n in totals]
+        lines += [f"real {c_name(n)} = 0;" for n in dict.fromkeys(totals)]
         shared = set().union(*(symbols(b) for b in blocks)) if blocks else set()
         lines += self._parameters(shared, None)
         for block in blocks:
@@ -103,17 +105,18 @@ class _Preparation:
         inner += statements(block.assignments, self.titles, self.printer)
         for store in block.stores:
             inner.append(f"model->{c_name(store.array)}[leg] = {self.printer.text(store.value)};")
-        count = self.bundle.leg_counts[leg]
+        count, legs = self.bundle.leg_counts[leg], count_of(leg)
         filled = capacity(count) > count
         for target, value in block.sums:
             term = self.printer.text(value)
             inner += statement(
-                f"{c_name(str(target))} += {f'leg < {count} ? {term} : 0' if filled else term}"
+                f"{c_name(str(target))} += {f'leg < {legs} ? {term} : 0' if filled else term}"
             )
         if "own" in words_of(inner):
-            own = f"leg < {count} ? leg : 0" if filled else "leg"
+            own = f"leg < {legs} ? leg : 0" if filled else "leg"
             inner.insert(0, f"const size_t own = {own};")
-        return [f"for (size_t leg = 0; leg < {capacity(count)}; ++leg) {{", *indented(inner), "}"]
+        every = f"FILLED({legs})" if filled else legs
+        return [f"for (size_t leg = 0; leg < {every}; ++leg) {{", *indented(inner), "}"]
 
     def _parameters(self, used: set[str], leg: str | None) -> list[str]:
         """The entries of the parameters, and the signs of the branches, that are used."""
@@ -164,12 +167,12 @@ def parameter_checks(bundle: Bundle) -> list[str]:
     lines = []
     for f in field_views(bundle):
         first = "&p->" + f.name + "[0]" * len(f.shape)
-        count, size = (f.shape[0] if f.per_leg else 1), math.prod(f.core)
-        lines.append(f"ok &= all_within({first}, {count * size});")
+        count, size = count_of(f.leg_type) if f.leg_type else "1", math.prod(f.core)
+        lines.append(f"ok &= all_within({first}, {times(count, size)});")
         lines += [f"ok &= all_zero({first} + {k}, {count}, {size});" for k in f.zeros]
         lines += [f"ok &= {check}({first}, {count});" for check in _CHECKS[f.rule]]
     for n, relation in enumerate(bundle.derivation.parameters.relations):
-        count, other, step = bundle.leg_counts[relation.leg_type], f"fixed_{n}", 0
+        count, other, step = count_of(relation.leg_type), f"fixed_{n}", 0
         if isinstance(relation.second, str):
             other, step = f"&p->{relation.second}[0][0]", 3
         else:

@@ -14,6 +14,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_sizes import array_names, times
 from pne_sym.backends.c_text import (
     PRINTER,
     WIDTH,
@@ -29,8 +30,8 @@ from pne_sym.backends.c_text import (
 )
 from pne_sym.backends.describe import equation_titles
 from pne_sym.backends.scalar import wrap
-from pne_sym.program.ir import Assignment, Block, Check, Function, LegInput
-from pne_sym.program.slices import columns, flat_places, is_full, slices, symbols
+from pne_sym.program.ir import Assignment, Block, Check, Function, LegInput, Store
+from pne_sym.program.slices import is_full, places_of, slices, symbols
 
 _TROUBLES = ("unreachable", "singular")
 _WORTH = 3
@@ -105,10 +106,18 @@ class Parts:
         )
         self.passed, self.sums = self.slices.passed, self.slices.sums
         self.made = self.slices.made
+        self.least = least_values(bundle)
 
-    def columns(self, array: str) -> int:
-        """Length of a row of an output array."""
-        return columns(self.bundle.program.shapes[array])
+    def _place(self, store: Store, index: str, name: str, tables: list[str], legs: int = 1) -> str:
+        """Where an entry stands in its array: the row by the length of rows, and the column."""
+        names = array_names(self.bundle, store.array)
+        rows, across = zip(*places_of(store, legs), strict=True)
+        column = _place_text(across, index, f"{name}_column", tables)
+        row = _place_text(rows, index, name, tables)
+        if len(names) < 2:
+            return row
+        start = times(row, names[1])
+        return column if start == "0" else start if column == "0" else f"{start} + {column}"
 
     def is_full(self, array: str) -> bool:
         """Whether every entry of an array is stored."""
@@ -166,9 +175,9 @@ class Parts:
         """Entries of the output arrays, and flags."""
         rows = []
         for store in block.stores if block else ():
-            place = flat_places(store, self.columns(store.array), 1)[0]
+            place = self._place(store, "", "", [])
             value = self.printer.text(store.value)
-            text = statement(f"{store.array}[{place}*w + k] = {value}")
+            text = statement(f"{store.array}[{_by(place)}*w + k] = {value}")
             rows.append((store.equation, [*loaded(loads, store.value), *text]))
         lines = headed(rows, self.titles)
         if self.summed and block and block.stores:
@@ -218,10 +227,11 @@ class Parts:
 
     def _of_leg(self, block: Block, loads: dict[str, str]) -> Iterator[tuple[str, list[str]]]:
         """What a leg adds to the sums, and its entries, with their equations."""
-        for n, (target, value) in enumerate(block.sums):
+        for (target, value), equation in zip(block.sums, block.sum_equations, strict=True):
+            n = self.sums.index(str(target))
             term, place = self.printer.text(value), f"terms[{n}*count + k]"
-            text = f"{place} = add ? {place} + {term} : {term};  /* {target} */"
-            yield block.sum_equations[n], [*loaded(loads, value), text]
+            text = f"gather(&{place}, add, {term});  /* {target} */"
+            yield equation, [*loaded(loads, value), text]
         for n, store in enumerate(block.stores):
             entry = statement(f"o[{n}*count + k] = {self.printer.text(store.value)}")
             yield store.equation, [*loaded(loads, store.value), *entry]
@@ -232,16 +242,16 @@ class Parts:
             copies = capacity(self.bundle.leg_counts[leg]) - len(places)
             places = (*places, *places[:1] * copies)
         place = _place_text(places, "i", f"place_{item.symbol.name}", tables)
-        return f"{vector_name(item.vector)}[({place})*w + j]"
+        return f"{vector_name(item.vector)}[{_by(place)}*w + j]"
 
     def place(self, block: Block) -> Routine:
         """Puts the entries of a leg where they belong in the output arrays."""
         leg, lines = block.leg_type, []
         tables: list[str] = []
         for n, store in enumerate(block.stores):
-            flat = flat_places(store, self.columns(store.array), self.bundle.leg_counts[leg])
-            place = _place_text(flat, "leg", f"place_{n}", tables)
-            lines.append(f"{store.array}[({place})*w + k] = o[{n}*count + first + k];")
+            legs = self.bundle.leg_counts[leg]
+            place = _by(self._place(store, "leg", f"place_{n}", tables, legs))
+            lines.append(f"{store.array}[{place}*w + k] = o[{n}*count + first + k];")
         for flag, n in self.flag_rows(block).items():
             lines.append(f"t->{flag}[k] += o[{n}*count + first + k];")
         parameters = [
@@ -269,7 +279,7 @@ class Parts:
         lines = []
         for check in checks:
             lines += loaded(loads, check.value, check.scale)
-            for trouble, condition in _conditions(check, self.printer):
+            for trouble, condition in self._conditions(check):
                 parts.setdefault(trouble, []).append(condition)
         for trouble, conditions in parts.items():
             text = " + ".join(f"UNLESS({c})" for c in dict.fromkeys(conditions))
@@ -277,10 +287,40 @@ class Parts:
             lines += statement(f"{target} {text}")
         return lines
 
+    def _conditions(self, check: Check) -> list[tuple[str, str]]:
+        """What must hold, each with the trouble that it is where it does not."""
+        value, trouble = self.printer.text(check.value), str(check.trouble)
+        if trouble == "singular":
+            text = _least(check)
+            return [(trouble, f"magnitude({value}) > {self.least.get(text, text)}")]
+        if trouble == "invalid":
+            # apart, as loops with conditions on conditions do not run in lanes
+            return [(trouble, f"is_finite({value})"), (trouble, f"{value} > 0")]
+        return [(trouble, f"{value} >= 0")]
+
+
+def _least(check: Check) -> str:
+    """What a value must be larger than."""
+    tolerance = "TOLERANCE*TOLERANCE" if check.power == 2 else "TOLERANCE"
+    return f"{tolerance}*{PRINTER.text(check.scale)}"
+
+
+def least_values(bundle: Bundle) -> dict[str, str]:
+    """What values must be larger than, where that is known: text -> name, the same everywhere."""
+    checks = [c for f in bundle.program.functions.values() for b in f.blocks for c in b.checks]
+    fixed = [c for c in checks if c.trouble == "singular" and sp.sympify(c.scale).is_Number]
+    texts = dict.fromkeys(map(_least, fixed))
+    return {text: f"LEAST_{k}" for k, text in enumerate(texts, 1)}
+
 
 def capacity(legs: int) -> int:
     """Length of the model's arrays over legs: vectors of four entries, where these are worth it."""
     return legs if legs < _WORTH else -(-legs // 4) * 4
+
+
+def _by(place: str) -> str:
+    """A place as a factor."""
+    return f"({place})" if " " in place else place
 
 
 def _loop(count: str, lines: list[str]) -> list[str]:
@@ -298,15 +338,3 @@ def _place_text(places: tuple[int, ...], index: str, name: str, tables: list[str
     text = f"static const size_t {name}[] = {{{', '.join(map(str, places))}}};"
     tables += wrap(text, WIDTH - 8, "    ")
     return f"{name}[{index}]"
-
-
-def _conditions(check: Check, printer: CPrinter) -> list[tuple[str, str]]:
-    """What must hold, each with the trouble that it is where it does not."""
-    value, trouble = printer.text(check.value), str(check.trouble)
-    if trouble == "singular":
-        tolerance = "TOLERANCE*TOLERANCE" if check.power == 2 else "TOLERANCE"
-        return [(trouble, f"magnitude({value}) > {tolerance}*{printer.text(check.scale)}")]
-    if trouble == "invalid":
-        # apart, as loops with conditions on conditions do not run in lanes
-        return [(trouble, f"is_finite({value})"), (trouble, f"{value} > 0")]
-    return [(trouble, f"{value} >= 0")]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_sizes import extent, sizes_of, times
 from pne_sym.backends.c_steps import c_order, runs_in_lanes
 from pne_sym.backends.c_text import Routine, comment, indented, listing, parameter_name
 from pne_sym.model.values import ROUNDING
@@ -36,6 +37,7 @@ class CArray:
     Attributes:
         name: of the argument.
         size: number of entries of one state.
+        extent: the same as a text.
         shape: for people.
         optional: NULL stands for what the function has by default.
         positive: entries must be positive.
@@ -43,6 +45,7 @@ class CArray:
 
     name: str
     size: int
+    extent: str
     shape: str
     optional: bool = False
     positive: bool = False
@@ -96,10 +99,9 @@ def _function(
     bundle: Bundle, f: PublicFunction, *, least: bool, weighted: bool = False
 ) -> CFunction:
     given = {a.name: a for a in f.inputs if a.name not in _WITHOUT or weighted}
-    inputs = tuple(_input(given[name]) for name in c_order(list(given)))
-    outputs = tuple(
-        CArray(_OUTPUTS.get(o.label, o.label), o.value.size, _shape(o)) for o in f.outputs
-    )
+    sizes = sizes_of(bundle)
+    inputs = tuple(_input(given[name], sizes) for name in c_order(list(given)))
+    outputs = tuple(_array(_OUTPUTS.get(o.label, o.label), o, sizes) for o in f.outputs)
     meaning = f.meaning + _LEAST[weighted] * least + _ALSO.get(f.name, "")
     missing = [a for a in f.inputs if a.name not in given]
     words = " ".join(a.name for a in missing)
@@ -116,9 +118,14 @@ def _function(
     return CFunction(name, f, text, inputs, outputs, runs_in_lanes(f))
 
 
-def _input(a: Argument) -> CArray:
+def _input(a: Argument, sizes: dict[str, int]) -> CArray:
     optional = a.default not in (None, Default.ONES) or not a.value.size
-    return CArray(a.name, a.value.size, _shape(a), optional=optional, positive=a.positive)
+    array = _array(a.name, a, sizes)
+    return replace(array, optional=optional, positive=a.positive)
+
+
+def _array(name: str, a: Argument, sizes: dict[str, int]) -> CArray:
+    return CArray(name, a.value.size, extent(a, sizes), _shape(a))
 
 
 def _shape(a: Argument) -> str:
@@ -192,7 +199,7 @@ class Caller:
 
     def _at(self, argument: CArray, count: str) -> str:
         """An argument at the state with number `count`."""
-        at = f"{argument.name} + {argument.size}*{count}" if count else argument.name
+        at = f"{argument.name} + {times(argument.extent, count)}" if count else argument.name
         return f"{argument.name} ? {at} : NULL" if argument.optional and count else at
 
     def _call(self, steps: Routine, count: str, code: str) -> list[str]:
@@ -221,7 +228,7 @@ class Caller:
             *indented(self._call(steps, "i", "codes"), 2),
             "        for (size_t k = 0; k < LANES; ++k) {",
             "            if (codes[k] != OK) {",
-            *indented(self._single("codes[k]", "(i + k)"), 4),
+            *indented(self._single("codes[k]", "i + k"), 4),
             "            }",
             "        }",
             "        failed += record(codes, LANES, status ? status + i : NULL);",

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_sizes import Sizes, times
 from pne_sym.backends.c_solve import elimination, order_at_home
 from pne_sym.backends.c_text import WIDTH, Routine, indented, listing, statement
 from pne_sym.backends.scalar import wrap
@@ -133,6 +134,7 @@ class Steps:
         self.eliminations = eliminations
         self.lanes = lanes
         self.w = "LANES" if self.lanes else "1"
+        self.sizes = Sizes(bundle, function)
         self.read = interpret.inputs_read(bundle.program, function)
         applied = [step for step in function.steps if isinstance(step, Apply)]
         self.used = {o.name for step in applied for o in step.operands}
@@ -141,7 +143,7 @@ class Steps:
         self.buffers: list[str] = []
         self.tables: list[str] = []
         self.summed = set[str]()
-        self.work = 0
+        self.work = (0, "")
         self.before: list[str] = []
 
     def routine(self) -> Routine:
@@ -150,8 +152,8 @@ class Steps:
         for step in self.f.steps:
             lines += self._step(step)
         lines += self._outputs()
-        if self.work:
-            self.buffers.append(self._buffer("work", self.work))
+        if self.work[0]:
+            self.buffers.append(self._buffer("work", self.work[1]))
         head = [*self.tables, *(listing("real ", self.buffers, ";") if self.buffers else [])]
         parameters = [
             "const prepared *m",
@@ -174,28 +176,35 @@ class Steps:
         apart = [o for o in judged if o.name not in self.summed]
         moved = [o for o in outputs if self.at[o.name] != wanted[o.name]]
         move = "deliver" if self.lanes else "copy"
-        moves = [f"{move}({o.value.size}, {self.at[o.name]}, {wanted[o.name]});" for o in moved]
+        moves = [
+            f"{move}({self._size(o.value)}, {self.at[o.name]}, {wanted[o.name]});" for o in moved
+        ]
         if self.lanes:
-            sums = [f"add_up({o.value.size}, {self.at[o.name]}, why.total);" for o in apart]
+            sums = [f"add_up({self._size(o.value)}, {self.at[o.name]}, why.total);" for o in apart]
             return [*sums, "suspect(&why, code);", *moves]
         checks = {
-            o.name: f"check({o.value.size}, 1, {self.at[o.name]}, why.overflow);" for o in judged
+            o.name: f"check({self._size(o.value)}, 1, {self.at[o.name]}, why.overflow);"
+            for o in judged
         }
         summed = [checks.pop(name) for name in [*checks] if name in self.summed]
         lines = [*checks.values(), "judge(&why, code);", *moves]
         if summed:
             lines[:0] = ["if (!is_finite(why.total[0])) {", *indented(summed), "}"]
-        refused = [f"refuse({o.value.size}, {wanted[o.name]});" for o in outputs]
+        refused = [f"refuse({self._size(o.value)}, {wanted[o.name]});" for o in outputs]
         return [*lines, "if (*code != OK) {", *indented(refused), "}"]
 
     # ---- arrays ------------------------------------------------------------------------------
 
-    def _by(self, size: int) -> str:
-        """So many entries of every state."""
-        return f"{size}*LANES" if self.lanes else str(size)
+    def _size(self, value: Value) -> str:
+        """Number of entries of one state."""
+        return self.sizes.size(value)
 
-    def _buffer(self, name: str, size: int) -> str:
-        return f"{name}[{size}*LANES]" if self.lanes else f"{name}[{size}]"
+    def _by(self, size: str) -> str:
+        """So many entries of every state."""
+        return times(size, "LANES") if self.lanes else size
+
+    def _buffer(self, name: str, size: str) -> str:
+        return f"{name}[{self._by(size)}]"
 
     def _given(self, step: Step, value: Value) -> str:
         """Where the user wants a value that can be written there at once; "" for none.
@@ -219,7 +228,7 @@ class Steps:
             self.at[value.name] = given
         elif value.size:
             zeroed = " = {0}" * (zero or not self.lanes)
-            self.buffers.append(self._buffer(value.name, value.size) + zeroed)
+            self.buffers.append(self._buffer(value.name, self._size(value)) + zeroed)
         return self.at[value.name]
 
     def _inputs(self) -> list[str]:
@@ -228,11 +237,12 @@ class Steps:
         for a in self.f.inputs:
             if a.name not in self.read or a.default is Default.HOME_Q or not a.value.size:
                 continue
-            given, own = f"{a.value.size}, {a.name}", f"{a.name}_in"
+            size, own = self._size(a.value), f"{a.name}_in"
+            given = f"{size}, {a.name}"
             if a.positive:
-                lines.append(f"require_positive({a.value.size}, {self.w}, {a.name}, why.invalid);")
+                lines.append(f"require_positive({size}, {self.w}, {a.name}, why.invalid);")
             if a.default or self.lanes:
-                self.buffers.append(self._buffer(own, a.value.size))
+                self.buffers.append(self._buffer(own, size))
             ends = f"{own}, why.{'total' if self.lanes else 'invalid'}"
             if a.default is Default.REST:
                 call = "motion_of_base_side_by_side" if self.lanes else "motion_of_base"
@@ -243,8 +253,7 @@ class Steps:
             elif self.lanes:
                 lines.append(f"{a.name} = side_by_side({given}, {ends});")
             else:
-                check = f"check({a.value.size}, 1, {a.name}, why.invalid);"
-                checks[f"total({a.name}, {a.value.size})"] = check
+                checks[f"total({a.name}, {size})"] = f"check({size}, 1, {a.name}, why.invalid);"
         if len(checks) > 1:
             head = statement(f"const real total_in = {' + '.join(checks)}")
             body = indented(checks.values())
@@ -264,6 +273,7 @@ class Steps:
         function, lines = self.bundle.program.functions[step.function], []
         if "q" in function.inputs and "joints" not in self.at:
             joints = Value("joints", (self.bundle.coordinates.sizes["NJ"],))
+            self.sizes.of["joints"] = ("NJ",)
             lines.append(f"close_loops(m, {self.w}, X, q0, {self._made(joints)}, &why);")
         targets = zip(function.arrays, step.targets, strict=True)
         arrays = {a: self._made(t, step) for a, t in targets}
@@ -278,7 +288,7 @@ class Steps:
             return []
         (value,), numbers, first = step.operands, step.numbers, (*step.numbers, 0)[0]
         whole = step.targets[0].shape == value.shape
-        row = value.size // max(value.shape[0], 1)
+        row = times(*self.sizes.names(value)[1:])
         if step.operation == "split":
             places = [0, first]
         elif step.operation in ("same", "entry") or (step.operation == "extend" and whole):
@@ -292,7 +302,8 @@ class Steps:
             if target.name not in self.used:
                 continue
             self.at[target.name] = target.name
-            offset = f" + {self._by(place * row)}" if place else ""
+            at = self.sizes.name(place, (*step.targets, value))
+            offset = f" + {self._by(times(at, row))}" if place else ""
             lines.append(f"const real *const {target.name} = {self.at[value.name]}{offset};")
         return lines
 
@@ -317,11 +328,18 @@ class Steps:
         if "{places}" in call:
             if not step.numbers:
                 return lines
-            table = f"places_{len(self.tables)}"
-            rows = ", ".join(map(str, step.numbers))
-            self.tables.append(f"static const size_t {table}[] = {{{rows}}};")
-            fields["places"] = table
+            fields["places"] = self._places(step)
         return [*lines, *(wrap(call.format(**fields), WIDTH - 4, "    ") if call else [])]
+
+    def _places(self, step: Apply) -> str:
+        """A table of places; users know that of the actuated joints."""
+        c = self.bundle.coordinates
+        if step.numbers == tuple(c.joints.index(joint) for joint in c.actuators):
+            return f"{self.bundle.name}_ACTUATED"
+        name = f"places_{step.targets[0].name}"
+        rows = ", ".join(map(str, step.numbers))
+        self.tables += listing(f"static const size_t {name}[] = {{", [rows], "};")
+        return name
 
     def _solve(self, step: Apply, fields: dict[str, object]) -> list[str]:
         """Linear equations: straight through in the order of home, or with a choice of pivots.
@@ -359,7 +377,7 @@ class Steps:
                 self._needs_work(step)
             return [straight.call_with(names)]
         self._needs_work(step)
-        unsure = f"unsure_{len(self.buffers)}"
+        unsure = f"unsure_{solved}"
         self.buffers.append(f"{unsure}[1] = {{0}}")
         careful.append("check({m}, 1, {x}, why.overflow);".format(**fields))
         return [
@@ -371,8 +389,8 @@ class Steps:
 
     def _needs_work(self, step: Apply) -> None:
         """Room for a system."""
-        m = step.operands[0].shape[0]
-        self.work = max(self.work, m * padded(m))
+        n, name = step.operands[0].shape[0], self.sizes.names(step.operands[0])[0]
+        self.work = max(self.work, (n, times(name, f"PADDED({name})")))
 
     def _is_solved(self, step: Apply) -> bool:
         """Whether the result is a matrix that stands where the next solution finds it."""
@@ -387,18 +405,25 @@ class Steps:
 
     def _fields(self, step: Apply, targets: Sequence[str]) -> dict[str, object]:
         """What calls are made of."""
-        m, n = (*step.operands[0].shape, 1, 1)[:2]
-        p = (*step.operands[1].shape, 1, 1)[1] if len(step.operands) > 1 else 1
-        size = step.targets[0].size
-        stride = f"stride_of({m + p}, {self.w})" if "work" in targets else m + p
+        names = [self.sizes.names(o) for o in step.operands]
+        m, n = (*names[0], "1", "1")[:2]
+        p = (*names[1], "1", "1")[1] if len(names) > 1 else "1"
+        target = step.targets[0]
+        both = f"{m} + {p}" if not (m + p).isdigit() else str(int(m) + int(p))
+        first = (*step.numbers, 0)[0]
         return {
             **dict(zip("abc", (self.at[o.name] for o in step.operands), strict=False)),
             **dict(zip("xy", targets, strict=False)),
-            **{f"all_{c}": self._by(o.size) for c, o in zip("abc", step.operands, strict=False)},
-            "m": m, "n": n, "p": p, "stride": stride, "w": self.w, "size": size,
-            "all": self._by(size),
-            "row": self._by(n), "row_b": self._by(p), "count": len(step.numbers),
-            "first": (*step.numbers, 0)[0],
+            **{
+                f"all_{c}": self._by(self._size(o))
+                for c, o in zip("abc", step.operands, strict=False)
+            },
+            "m": m, "n": n, "p": p, "w": self.w, "size": self._size(target),
+            "stride": f"stride_of({both}, {self.w})" if "work" in targets else both,
+            "all": self._by(self._size(target)),
+            "row": self._by(n), "row_b": self._by(p),
+            "count": self.sizes.name(len(step.numbers), (target, *step.operands)),
+            "first": self.sizes.name(first, (*step.targets, *step.operands)) if first else 0,
             # a state in doubt is settled on its own, where an overflow comes after other causes
             "doubt": "why.invalid" if self.lanes else "why.overflow",
         }  # fmt: skip
@@ -411,34 +436,31 @@ class Steps:
         names = {p.rsplit("*", 1)[-1] for r in (residual, slope) for p in r.parameters}
         inputs = [a.name for a in self.f.inputs if a.name in names and a.name != "X"]
         others = c_order(inputs)
-        n = self.bundle.coordinates
         found = {"X": "found", "code": "&code"}
         text = render(
             "c/search.c.jinja",
             name=step.residual,
             parameters=", ".join(("const prepared *m", *(f"const real *{o}" for o in others))),
-            gaps=next(f for f in self.bundle.program.public if f.name == step.residual)
-            .outputs[0].value.size,
+            gaps=self._extent(step.residual),
             trials=interpret.HALVINGS if step.halving else 1,
             close="CLOSED" if step.halving else "MET",
             residual=residual.call_with({**found, "gap_out": "gap"}),
             slope=slope.call_with({**found, "slope_out": "slope"}),
             trial=residual.call_with({"X": "trial", "code": "&tried", "gap_out": "next"}),
-            sizes=n.sizes,
         )  # fmt: skip
         self.before.append(text)
         arguments = ", ".join(("m", *others, step.start.name, self._made(step.target)))
         return [f"blame(search_{step.residual}({arguments}), &why);"]
 
+    def _extent(self, name: str) -> str:
+        """Number of entries of what a function gives."""
+        function = next(f for f in self.bundle.program.public if f.name == name)
+        return Sizes(self.bundle, function).size(function.outputs[0].value)
+
 
 def _reads(step: Step, names: set[str]) -> bool:
     """Whether a step reads any of these arrays; a function, or a search, reads the inputs."""
     return not isinstance(step, Apply) or any(o.name in names for o in step.operands)
-
-
-def padded(n: int) -> int:
-    """Length of a row of a system of n equations with its right side, a multiple of 4."""
-    return (n + 4) // 4 * 4
 
 
 def c_order(names: Sequence[str]) -> list[str]:

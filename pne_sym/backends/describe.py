@@ -19,7 +19,7 @@ class FieldView:
         rows: default values, one text per leg (or one in all).
         zeros: flat indices that are zero by structure.
         rule: what its values must be.
-        per_leg: whether the first index runs over the legs of a type.
+        leg_type: name of the type over whose legs the first index runs, or None.
     """
 
     name: str
@@ -29,7 +29,12 @@ class FieldView:
     rows: tuple[str, ...]
     zeros: tuple[int, ...]
     rule: Rule
-    per_leg: bool
+    leg_type: str | None
+
+    @property
+    def per_leg(self) -> bool:
+        """Whether the first index runs over the legs of a type."""
+        return self.leg_type is not None
 
     @property
     def core(self) -> tuple[int, ...]:
@@ -176,9 +181,7 @@ def field_views(bundle: Bundle) -> tuple[FieldView, ...]:
 def _field(f: ParameterField) -> FieldView:
     rows = [_literal(row) for row in f.default] if f.leg_type else [_literal(f.default)]
     shape = (len(f.default), *f.shape) if f.leg_type else f.shape
-    return FieldView(
-        f.name, f.unit, f.meaning, shape, tuple(rows), f.zeros, f.rule, f.leg_type is not None
-    )
+    return FieldView(f.name, f.unit, f.meaning, shape, tuple(rows), f.zeros, f.rule, f.leg_type)
 
 
 def _literal(value: object) -> str:

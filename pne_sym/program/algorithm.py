@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 
 from pne_sym.program.ir import Program
@@ -14,7 +15,7 @@ class Algorithm:
 
     def __init__(self) -> None:
         self.steps: list[Step] = []
-        self._made = 0
+        self._made = Counter[str]()
 
     def run(self, function: str, program: Program, *wanted: str) -> list[Value]:
         """Run a function of the program; returns some of its arrays."""
@@ -35,7 +36,7 @@ class Algorithm:
         fixed = tuple(numbers)
         targets = []
         for shape in OPERATIONS[operation].shapes(tuple(o.shape for o in operands), fixed):
-            self._made += 1
-            targets.append(Value(f"{operation}_{self._made}", shape))
+            self._made[operation] += 1
+            targets.append(Value(f"{operation}_{self._made[operation]}", shape))
         self.steps.append(Apply(operation, operands, tuple(targets), fixed))
         return tuple(targets)

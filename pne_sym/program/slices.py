@@ -24,7 +24,7 @@ class Slices:
         legs: a block per leg type, in order.
         after: what needs the sums over the legs, or None.
         passed: names made before the legs that later parts read, in order.
-        sums: names of the sums over the legs, in order.
+        sums: names of the sums over the legs, in order; leg types may add to the same.
     """
 
     function: Function
@@ -72,7 +72,7 @@ def slices(function: Function) -> Slices:
         legs,
         after,
         tuple(n for n in dict.fromkeys(made) if n in later),
-        tuple(str(t) for b in legs for t, _ in b.sums),
+        tuple(dict.fromkeys(str(t) for b in legs for t, _ in b.sums)),
     )
 
 
