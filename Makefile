@@ -59,7 +59,7 @@ test-all: $(VENV)/test.stamp ## Run the tests, every case
 	$(BIN)/python -m pytest $(PYTEST_ARGS) -m ""
 
 .PHONY: targets
-targets: $(VENV)/targets.stamp ## Test all extension modules, array-API modules (NumPy, JAX, PyTorch, Dask) and Octave packages
+targets: $(VENV)/targets.stamp ## Test all extension modules, array-API modules (NumPy, JAX, PyTorch, Dask) and Octave packages; MuJoCo
 	$(BIN)/python -m pytest -n 0 -o norecursedirs=".*" tests/targets
 
 .PHONY: printed

@@ -40,7 +40,7 @@ def states(m: Any, count: int) -> dict[str, Any]:
     X = m.HOME_X + 1e-2 * rng.uniform(-1.0, 1.0, (count, m.NQ))
     found = {name: rng.uniform(-1.0, 1.0, (count, m.NV)) for name in "VA"}
     found |= {"X": X, "X0": X, "tau": rng.uniform(-1.0, 1.0, (count, m.NU))}
-    found["q_actuated"] = m.inverse_kinematics(X)[:, list(m._DRIVEN_JOINTS)]
+    found["q_actuated"] = m.inverse_kinematics(X)[:, list(m.ACTUATED)]
     if hasattr(m, "rotation"):
         found |= {"R": m.rotation(X), "t": X[:, : m.NQ - 4], "rpy": X[:, :3]}
     return found

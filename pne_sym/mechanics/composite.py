@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import sympy as sp
 
 from pne_sym.derivation import Book, Law
-from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.leg_chain import LegChain
+from pne_sym.mechanics.links import LinkBody
 from pne_sym.vector import (
     Cross,
     Dot,
@@ -27,39 +28,6 @@ from pne_sym.vector import (
     tensor_sum,
     vector_sum,
 )
-
-
-class Inertial(Protocol):
-    """A link with inertia: see `links.LinkBody`."""
-
-    @property
-    def joint(self) -> int:
-        """Number of the joint that moves it."""
-
-    @property
-    def at_tip(self) -> bool:
-        """Whether its reference point is the connection point."""
-
-    @property
-    def mass(self) -> Any:
-        """Scalar."""
-
-    @property
-    def first_moment(self) -> Any:
-        """About the reference point."""
-
-    @property
-    def inertia(self) -> Any:
-        """Tensor about the reference point."""
-
-
-class Positions(Protocol):
-    """Where the links are along the chain: see `leg_motion.MotionWriter`."""
-
-    spans: dict[int, Any]
-
-    def reach(self, j: int) -> Any:
-        """From the origin of the group of link j to the origin of link j."""
 
 
 @dataclass(frozen=True)
@@ -78,10 +46,8 @@ class CompositeWriter:
     they move with the platform and are accounted for there.
     """
 
-    def __init__(
-        self, book: Book, g: LegGeometry, positions: Positions, bodies: Sequence[Inertial]
-    ) -> None:
-        self.book, self.g, self.positions = book, g, positions
+    def __init__(self, book: Book, chain: LegChain, bodies: Sequence[LinkBody]) -> None:
+        self.book, self.g, self.chain = book, chain.g, chain
         self.bodies = {body.joint: body for body in bodies}
 
     def inertia(self) -> dict[tuple[int, int], Any]:
@@ -116,7 +82,7 @@ class CompositeWriter:
         parts = []
         if k < g.count:
             opens = g.group[k + 1] != group
-            parts.append(self._moved(beyond, self.positions.spans[group]) if opens else beyond)
+            parts.append(self._moved(beyond, self.chain.spans[group]) if opens else beyond)
         own = self.bodies.get(k)
         if own is not None:
             body = (
@@ -124,7 +90,7 @@ class CompositeWriter:
                 if own.at_tip
                 else _Body(own.mass, own.first_moment, own.inertia)
             )
-            parts.append(body if own.at_tip else self._moved(body, self.positions.reach(k)))
+            parts.append(body if own.at_tip else self._moved(body, self.chain.reach(k)))
         turns = k == group
         return _Body(
             sp.Add(*(p.mass for p in parts)),
@@ -207,7 +173,7 @@ class CompositeWriter:
         """The same moment about the origin of a group further in."""
         if not group:
             return ZeroVector
-        total = vector_sum((moment, Cross(self.positions.spans[group], force)))
+        total = vector_sum((moment, Cross(self.chain.spans[group], force)))
         return self._named(
             f"L_c_{k}_{group}",
             total,

@@ -27,9 +27,10 @@ from pne_sym.mechanics.constraints import axis_across, force_vanishes
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
 from pne_sym.mechanics.joint_forces import write_joint_forces
 from pne_sym.mechanics.joint_limits import write_margins
+from pne_sym.mechanics.leg_chain import LegChain
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter
 from pne_sym.mechanics.leg_geometry import LegGeometry, build_geometry
-from pne_sym.mechanics.leg_motion import MotionWriter
+from pne_sym.mechanics.leg_motion import write_motion
 from pne_sym.mechanics.link_forces import LinkWriter
 from pne_sym.mechanics.links import introduce_bodies
 from pne_sym.mechanics.mobility import check_solvable, mobility
@@ -78,18 +79,18 @@ def _derive(book: Book, manipulator: Manipulator) -> Derivation:
     check_dependence(manipulator)
     for leg_type in types:
         legs.append(_derive_leg(book, manipulator, space, platform, leg_type))
-    writer = PlatformWriter(book, space, platform, [leg for leg, _ in legs])
+    writer = PlatformWriter(book, space, platform, legs)
     writer.lump()
     writer.equilibrium()
     writer.blocks()
-    _potential(book, platform, writer, [leg for leg, _ in legs], [k for _, k in legs])
-    _dissipation(book, [leg for leg, _ in legs])
-    _motors(book, manipulator, [leg for leg, _ in legs])
-    for leg, motion in legs:
-        write_margins(book, leg.g, motion.q, _starts(manipulator))
-    write_lengths(book, [leg.g for leg, _ in legs])
-    book.coordinates = _coordinates(manipulator, space, [leg for leg, _ in legs])
-    equal = (pair for leg, _ in legs for pair in leg.g.same_axes())
+    _potential(book, platform, writer, legs)
+    _dissipation(book, legs)
+    _motors(book, manipulator, legs)
+    for leg in legs:
+        write_margins(book, leg.g, leg.motion.chain.q, _starts(manipulator))
+    write_lengths(book, [leg.g for leg in legs])
+    book.coordinates = _coordinates(manipulator, space, legs)
+    equal = (pair for leg in legs for pair in leg.g.same_axes())
     return with_symbols(book.close(), manipulator, equal)
 
 
@@ -137,7 +138,7 @@ def _derive_leg(
     space: TaskSpace,
     platform: PlatformMotion,
     leg_type: LegType,
-) -> tuple[Leg, MotionWriter]:
+) -> Leg:
     prefix, title = leg_type.name, leg_type.architecture
     book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", "", prefix)
     g = build_geometry(book, leg_type, space.planar)
@@ -154,8 +155,7 @@ def _derive_leg(
     inverse = _inverse_kinematics(book, manipulator, space, platform, g)
     _tell_rotations(book, g, inverse)
     book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))
-    kinematics = MotionWriter(book, g, platform, space, inverse)
-    motion = kinematics.write(prefix)
+    motion = write_motion(book, g, platform, space, inverse)
     text = (
         _NEWTON_EULER
         + (_CARRIED if carried else _KEPT)
@@ -163,16 +163,16 @@ def _derive_leg(
         + (_COMPOSITE if g.composite else "")
         + (_MOMENTS if g.pairs else "")
     )
-    forces = write_joint_forces(book, g, motion, kinematics.q, kinematics.end_turning)
+    forces = write_joint_forces(book, g, motion)
     book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", text, prefix)
-    links = LinkWriter(book, g, platform.gravity, motion, kinematics, bodies)
+    links = LinkWriter(book, platform.gravity, motion, bodies)
     dynamics = DynamicsWriter(links, forces).run()
     leg = Leg(g, motion, dynamics)
     _joint_outputs(book, manipulator, leg, inverse)
     if not inverse.is_closed:
-        _closure_outputs(book, leg, kinematics.tip_frame(), space)
+        _closure_outputs(book, leg, motion.chain.tip_frame, space)
         _orientation(book, manipulator, leg, space)
-    return leg, kinematics
+    return leg
 
 
 def _tell_rotations(book: Book, g: LegGeometry, inverse: InverseKinematics) -> None:
@@ -394,19 +394,20 @@ def _potential(
     platform: PlatformMotion,
     writer: PlatformWriter,
     legs: list[Leg],
-    kinematics: list[MotionWriter],
 ) -> None:
     """Potential energy, zero at the base origin."""
     sprung = any(leg.dynamics.forces.potential != 0 for leg in legs)
     text = "Weight times height, zero at the base origin" + ", and the energy of springs" * sprung
     book.chapter("V", "Potential energy", f"{text}.")
     total: Any = -Dot(platform.weight, writer.mass * platform.t + writer.moment)
-    for leg, motion in zip(legs, kinematics, strict=True):
+    for leg in legs:
         g = leg.g
         terms: list[Any] = []
         for body in leg.dynamics.bodies:
             if not body.at_tip:  # its mass is counted with the platform
-                terms.append(body.mass * vector_sum((g.base_point, *_path(motion, g, body.joint))))
+                terms.append(
+                    body.mass * vector_sum((g.base_point, *_path(leg.motion.chain, body.joint)))
+                )
             terms.append(body.first_moment)
         moment = vector_sum(terms)
         if moment != ZeroVector:
@@ -416,12 +417,12 @@ def _potential(
     book.outputs.append(Output("potential", energy, ((0, 0),)))
 
 
-def _path(motion: MotionWriter, g: Any, joint: int) -> list[Any]:
+def _path(chain: LegChain, joint: int) -> list[Any]:
     """Vectors from the base point to the origin of a link."""
-    group, path = g.group[joint], [motion.reach(joint)]
+    group, path = chain.g.group[joint], [chain.reach(joint)]
     while group:
-        group = g.group[group - 1]
-        path.append(motion.spans[group])
+        group = chain.g.group[group - 1]
+        path.append(chain.spans[group])
     return path
 
 

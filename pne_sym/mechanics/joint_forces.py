@@ -16,7 +16,7 @@ import sympy as sp
 from pne_sym.derivation import Book
 from pne_sym.mechanics.joint_parameters import END, JointParameters, Place
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.linear_writer import LegMotion
+from pne_sym.mechanics.leg_motion import LegMotion
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.effects import Friction
 from pne_sym.model.manipulator import Joint
@@ -109,18 +109,9 @@ class JointForces:
         return sp.Add(*(own.stored for own in self.own.values()))
 
 
-def write_joint_forces(
-    book: Book, g: LegGeometry, motion: LegMotion, q: Mapping[int, Any], turning: Vector
-) -> JointForces:
-    """The chapter on friction, springs and rotors of a leg, where there are any.
-
-    Args:
-        book: of the derivation.
-        g: of the leg.
-        motion: of the leg.
-        q: displacements by joint.
-        turning: angular velocity of the platform relative to the last link.
-    """
+def write_joint_forces(book: Book, g: LegGeometry, motion: LegMotion) -> JointForces:
+    """The chapter on friction, springs and rotors of a leg, where there are any."""
+    q, turning = motion.chain.q, motion.end_turning
     joints, end = g.leg_type.model.joints, g.leg_type.model.platform_joint.friction
     if not (end or any(j.friction or j.spring or j.actuator for j in joints)):
         return JointForces(motion.qd, motion.qdd)

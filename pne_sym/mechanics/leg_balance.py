@@ -31,7 +31,8 @@ class BalanceWriter:
     """Writes what inertia, weight and joint forces need along every degree of freedom."""
 
     def __init__(self, links: LinkWriter, found: LinkForces, forces: JointForces) -> None:
-        self.book, self.g, self.motion, self.k = links.book, links.g, links.motion, links.k
+        self.book, self.motion, self.chain = links.book, links.motion, links.motion.chain
+        self.g = self.chain.g
         self.links, self.found, self.forces = links, found, forces
         define = LinearWriter(self.book, self.g, self.motion.collection).define
         self.eq = Writer(self.book, self.g, _TERMS, define)
@@ -59,7 +60,7 @@ class BalanceWriter:
         """Inertia of joint k along joint j, where the leg's inertia is collected so."""
         if not self.g.composite:
             return {}
-        return CompositeWriter(self.book, self.g, self.k, self.links.bodies).inertia()
+        return CompositeWriter(self.book, self.chain, self.links.bodies).inertia()
 
     def _moment(self, group: int, members: Sequence[int], force: Any, moment: Any) -> Any:
         """Moment about the group's origin of everything from the group outwards."""
@@ -70,8 +71,8 @@ class BalanceWriter:
             (
                 self.links.group_moment(group, self.found.acceleration),
                 moment,
-                Cross(self.k.spans[group], force),
-                *(Cross(self.k.reach(j), own[j]) for j in members if j in own),
+                Cross(self.chain.spans[group], force),
+                *(Cross(self.chain.reach(j), own[j]) for j in members if j in own),
             )
         )
         return self._named("N_#", total, group, self.g.frame("axes", group))

@@ -21,7 +21,8 @@ from pne_sym.derivation import Book
 from pne_sym.mechanics.joint_forces import JointForces
 from pne_sym.mechanics.leg_balance import BalanceWriter
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.linear_writer import LegMotion, LinearWriter
+from pne_sym.mechanics.leg_motion import LegMotion
+from pne_sym.mechanics.linear_writer import LinearWriter
 from pne_sym.mechanics.link_forces import LinkForces, LinkWriter
 from pne_sym.mechanics.links import LinkBody
 from pne_sym.mechanics.terms import Writer, glossary
@@ -88,7 +89,7 @@ class DynamicsWriter:
         self.links, self.forces = links, forces
         self.g: LegGeometry = links.g
         self.motion: LegMotion = links.motion
-        self.frame = links.k.tip_frame()
+        self.frame = links.motion.chain.tip_frame
         book: Book = links.book
         define = LinearWriter(book, self.g, self.motion.collection).define
         self.eq = Writer(book, self.g, _TERMS, define)

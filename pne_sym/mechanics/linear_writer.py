@@ -15,58 +15,14 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Role
-from pne_sym.mechanics.completion import ConstraintWrench
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.vector import (
     LinearForm,
     TensorSymbol,
-    Vector,
     VectorSymbol,
     ZeroVector,
     linear_form,
 )
-
-
-@dataclass(frozen=True)
-class LegScrews:
-    """How the joints of a leg move the connection point.
-
-    Attributes:
-        v: velocity vectors v_j of the joints at the connection point.
-        w: reciprocal vectors w_j (without extra joints).
-        o: moment parts of the reciprocal wrenches, where the leg transmits moments.
-        m: the same as coefficients along the moment directions.
-        n: moment directions.
-        constraints: constraint wrenches: they do no work along the leg's degrees of freedom.
-        gap: from the connection point as the links reach it to the platform's.
-        named: expressions that have a name, for coefficients that come out as such.
-    """
-
-    v: dict[int, Vector]
-    w: dict[int, VectorSymbol]
-    o: dict[int, Vector]
-    m: dict[int, list[Any]]
-    n: list[Any]
-    constraints: list[ConstraintWrench]
-    gap: Any
-    named: dict[Any, Any]
-
-
-@dataclass(frozen=True)
-class LegRates(LegScrews):
-    """Velocities of a leg, by joint number or group.
-
-    Attributes:
-        qd: joint rates.
-        omega: angular velocity, by group.
-        spin: centripetal tensor omega~ omega~, by group.
-        slide: velocity with which the slides of a group move its far end, by group.
-    """
-
-    qd: dict[int, Any]
-    omega: dict[int, Vector]
-    spin: dict[int, Any]
-    slide: dict[int, Vector]
 
 
 @dataclass(frozen=True)
@@ -88,43 +44,6 @@ class Collection:
     def rest(self, symbol: Any) -> Any:
         """Remainder of a quantity at zero acceleration."""
         return self.known[symbol].remainder if symbol in self.known else symbol
-
-
-@dataclass(frozen=True)
-class LegMotion(LegRates):
-    """Motion of a leg, by joint number or group.
-
-    Attributes:
-        collection: what is known to depend on the acceleration.
-        S_ddot: acceleration of the connection point.
-        qdd: joint accelerations.
-        ydd: those of the extra coordinates, by joint.
-        nu: biases of the angular acceleration along the moment directions.
-        relative: acceleration of the connection point less the bias.
-        alpha: angular acceleration, by group.
-        acceleration_tensor: alpha~ + omega~ omega~, by group; its remainder.
-        origin_acceleration: of the groups' origins, by group.
-    """
-
-    collection: Collection
-    S_ddot: Any
-    qdd: dict[int, Any]
-    ydd: dict[int, Any]
-    nu: list[Any]
-    relative: Any
-    alpha: dict[int, Vector]
-    acceleration_tensor: dict[int, Any]
-    origin_acceleration: dict[int, Vector]
-
-    @property
-    def a_p(self) -> Any:
-        """Acceleration of the connection point without its centripetal part."""
-        return self.collection.a_p
-
-    @property
-    def known(self) -> dict[Any, LinearForm]:
-        """Linear forms of everything that depends on the acceleration."""
-        return self.collection.known
 
 
 class LinearWriter:

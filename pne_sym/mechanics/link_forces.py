@@ -12,9 +12,8 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book
-from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.leg_motion import MotionWriter
-from pne_sym.mechanics.linear_writer import LegMotion, LinearWriter
+from pne_sym.mechanics.leg_motion import LegMotion
+from pne_sym.mechanics.linear_writer import LinearWriter
 from pne_sym.mechanics.links import LinkBody
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import (
@@ -93,15 +92,14 @@ class LinkWriter:
     def __init__(
         self,
         book: Book,
-        g: LegGeometry,
         gravity: Vector,
         motion: LegMotion,
-        kinematics: MotionWriter,
         bodies: Sequence[LinkBody],
     ) -> None:
-        self.book, self.g, self.gravity, self.motion = book, g, gravity, motion
-        self.k, self.bodies = kinematics, bodies
-        self.eq = Writer(book, g, _TERMS, LinearWriter(book, g, motion.collection).define)
+        self.book, self.gravity, self.motion, self.bodies = book, gravity, motion, bodies
+        self.chain, self.g = motion.chain, motion.chain.g
+        define = LinearWriter(book, self.g, motion.collection).define
+        self.eq = Writer(book, self.g, _TERMS, define)
 
     def forces(self) -> LinkForces:
         """Inertia force of every link less its weight."""
@@ -121,11 +119,10 @@ class LinkWriter:
 
     def _turning(self, body: LinkBody) -> Any:
         """The part of a link's inertia force that comes from its turning."""
-        motion, h = self.motion, body.first_moment
-        omega, alpha = motion.omega[body.group], motion.alpha[body.group]
+        h, turns = body.first_moment, self.motion.groups[body.group]
+        omega, alpha, (tensor, at_rest) = turns.omega, turns.alpha, turns.tensor
         if omega == ZeroVector:
             return ZeroVector
-        tensor, at_rest = motion.acceleration_tensor[body.group]
         return self.eq.collected(
             "phi_#",
             Cross(alpha, h) + Cross(omega, Cross(omega, h)),
@@ -142,8 +139,8 @@ class LinkWriter:
         if body.at_tip:
             value = self.motion.S_ddot
         else:
-            slides = [i for i in range(1, j + 1) if g.group[i] == body.group and g.slides(i)]
-            value, form, rest = self.k.point_acceleration(body.group, self.k.reach(j), slides)
+            reach, slides = self.chain.reach(j), self.chain.slides(body.group, j)
+            value, form, rest = self.motion.of_point(body.group, reach, slides)
             forms = {"forms": (form - self.gravity,), "rest_forms": (rest - self.gravity,)}
         frame, collected = g.frame("axes", body.group), body.at_tip or not g.composite
         relative = value - self.gravity
@@ -153,21 +150,19 @@ class LinkWriter:
 
     def group_moment(self, group: int, acceleration: dict[int, Any]) -> Any:
         """Moment of inertia of a group's links about their own reference points (Euler)."""
-        motion = self.motion
         members = [b for b in self.bodies if b.group == group]
         if not members or group == 0:
             return ZeroVector
         J, second = self._group_inertia(group, members)
-        omega, alpha = motion.omega[group], motion.alpha[group]
+        turns = self.motion.groups[group]
+        omega, alpha = turns.omega, turns.alpha
         both = [(acceleration[b.joint], self._rest(acceleration[b.joint])) for b in members]
         moments, at_rest = (
             [Cross(b.first_moment, a[k]) for b, a in zip(members, both, strict=True)]
             for k in (0, 1)
         )
         ways = [(moments, at_rest), *self._gathered_moments(members, acceleration)]
-        turning, turning_rest = (
-            Axial(Compose(tensor, second)) for tensor in motion.acceleration_tensor[group]
-        )
+        turning, turning_rest = (Axial(Compose(tensor, second)) for tensor in turns.tensor)
         return self.eq.collected(
             "mu_#",
             vector_sum((J @ alpha, Cross(omega, J @ omega), *moments)),

@@ -6,12 +6,15 @@ Accelerations in Newton's and Euler's equations are absolute ones.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Quantity, Role
+from pne_sym.mechanics.joint_accelerations import JointAccelerations
 from pne_sym.mechanics.platform_motion import BaseMotion, PlatformMotion
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import (
     Compose,
     Cross,
@@ -20,16 +23,35 @@ from pne_sym.vector import (
     Transpose,
     Vector,
     VectorSymbol,
+    ZeroTensor,
     ZeroVector,
+    linear_form,
     vector_sum,
 )
 
+_TERMS = glossary(r"""
+S_ddot_b   | \ddot{\mathbf S}_b       | MOVING_FRAME | beyond the paper
+    acceleration of the connection point in space, less that of the base origin
+a_b0       | \mathbf a_{b0}           | MOVING_FRAME | beyond the paper
+    acceleration of the base point, less that of the base origin
+omega_b_#  | \boldsymbol\omega_{b#}   | MOVING_FRAME | beyond the paper
+    angular velocity of link # in space
+W_b_#      | \mathbf W_{b#}           | DEFINITION symmetric
+    centripetal tensor of link # in space
+zeta_b_#   | \boldsymbol\zeta_{b#}    | MOVING_FRAME | beyond the paper
+    angular acceleration of link # from the turning of its axis in space
+""")
 _TEXT = (
     r"The base turns and accelerates; $`\mathbf R_b`$ turns its axes into those of the world, in "
     r"which gravity is given. What is relative to the base stays as it is; a point at "
     r"$`\mathbf r`$ has the acceleration $`\mathbf a_b+\mathbf B_b\,\mathbf r+2\,"
     r"\boldsymbol\omega_b\times\dot{\mathbf r}`$ besides, of which $`\mathbf a_b`$ acts as gravity "
     r"does."
+)
+_OF_LEG = (
+    r"Velocities and accelerations in space, in axes that turn with the base: those relative to "
+    r"the base, and those of a point or body that is carried along. That of the base origin counts "
+    r"with gravity, $`\mathbf g_f`$."
 )
 _REFERENCE = "beyond the paper"
 
@@ -133,3 +155,34 @@ def carried_platform(
         "inertia moment of the platform from the motion of the base",
     )
     return force, moment
+
+
+def carried_leg(
+    book: Book, p: PlatformMotion, base: BaseMotion, motion: JointAccelerations
+) -> tuple[JointAccelerations, Vector]:
+    """The motion of a leg in space, and the acceleration of its base point.
+
+    Args:
+        book: of the derivation.
+        p: motion of the platform.
+        base: motion of the base.
+        motion: of the leg, relative to the base.
+    """
+    g, w = motion.chain.g, base.omega
+    eq, of = Writer(book, g, _TERMS), g.leg_type
+    title = f"Motion of a {of.architecture} leg with its base"
+    book.chapter(f"{of.name}-B", title, _OF_LEG, of.name)
+    r, coriolis = p.t + g.platform_point, Cross(w, motion.S_dot) * 2
+    total = motion.S_ddot + Cross(base.alpha, r) + Cross(w, Cross(w, r)) + coriolis
+    forms = (motion.S_ddot + base.tensor @ r + coriolis,)
+    S_ddot = eq("S_ddot_b", total, body="base", forms=forms)
+    motion.known[S_ddot] = linear_form(total, [motion.a_p], motion.known)
+    turning = Cross(base.alpha, g.base_point) + Cross(w, Cross(w, g.base_point))
+    origin = eq("a_b0", turning, body="base", forms=(base.tensor @ g.base_point,))
+    omega, spin, turned = {0: w}, {0: ZeroTensor}, {0: ZeroVector}
+    for j in motion.chain.turning:
+        previous, frame = omega[g.group[j - 1]], g.frame("axes", j)
+        omega[j] = eq("omega_b_#", previous + motion.qd[j] * g.spin(j), j, body=frame)
+        spin[j] = eq("W_b_#", Compose(Skew(omega[j]), Skew(omega[j])), j, body=frame)
+        turned[j] = eq.named("zeta_b_#", motion.qd[j] * Cross(previous, g.spin(j)), j, body=frame)
+    return replace(motion, omega=omega, spin=spin, S_ddot=S_ddot, coriolis=turned), origin

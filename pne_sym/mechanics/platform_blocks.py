@@ -15,7 +15,7 @@ from typing import Any, Protocol
 
 from pne_sym.derivation import Book, Equation, Law, names_in
 from pne_sym.mechanics.leg_dynamics import LegDynamics
-from pne_sym.mechanics.linear_writer import LegMotion
+from pne_sym.mechanics.leg_motion import LegMotion
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.vector import (
     LinearForm,

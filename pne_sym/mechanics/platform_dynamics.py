@@ -15,7 +15,7 @@ from pne_sym.derivation import Book, Law, Output
 from pne_sym.mechanics.completion import ConstraintWrench
 from pne_sym.mechanics.leg_dynamics import LegDynamics
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.linear_writer import LegMotion
+from pne_sym.mechanics.leg_motion import LegMotion
 from pne_sym.mechanics.moving_base import carried_platform
 from pne_sym.mechanics.platform_blocks import BlockWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion
