@@ -73,8 +73,8 @@ def test_it_looks_like_the_png(name: str, tmp_path: Path) -> None:
 def test_a_broken_letter_is_noticed(tmp_path: Path) -> None:
     """The comparison sees that lines after curves are left out, of one letter."""
     text = rendered(picture("sixbar"), ".svg").decode()
-    start = text.index('id="DejaVuSans-15"')  # the leg number 2
-    end = text.index("</defs>", start)
+    start = text.index('id="DejaVuSans-56"')  # the s of joints
+    end = text.index("/>", start)
     letter = re.sub(r"(?<=\d) \nL ", " ", text[start:end])
     svg = tmp_path / "broken.svg"
     svg.write_text(text[:start] + letter + text[end:])
