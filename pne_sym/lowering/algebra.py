@@ -6,12 +6,13 @@ here, as SymPy would and in its order of terms, which takes a tenth of the time 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
 import sympy as sp
 
-from pne_sym.lowering.linear import is_negative, linear, multiple, scaled, sum_of
+from pne_sym.lowering.linear import is_negative, linear, multiple, place, scaled, sum_of
 from pne_sym.program.ir import Stage
 
 _KEPT = 1 << 16  # more than the statements of any model
@@ -68,6 +69,35 @@ def total(*terms: Any) -> Any:
     if any(form is None for form in forms):
         return sp.Add(*terms)
     return sum_of(*(form for form in forms if form is not None))
+
+
+def replaced(expr: Any, changes: Mapping[Any, Any]) -> Any:
+    """The expression with others in place of symbols."""
+    if expr.is_Symbol:
+        return changes.get(expr, expr)
+    if symbols(expr).isdisjoint(changes):
+        return expr
+    args = [replaced(arg, changes) for arg in expr.args]
+    if expr.is_Add:
+        return total(*args)
+    if expr.is_Mul:
+        return _product_of(tuple(args))
+    if isinstance(expr, sp.Min):  # SymPy would try which is the least
+        return sp.Min(*args, evaluate=False)
+    return expr.func(*args)
+
+
+@lru_cache(_KEPT)
+def _product_of(factors: tuple[Any, ...]) -> Any:
+    """The product; of different symbols and sums, with a number, put together here."""
+    parts = [part for f in factors for part in (f.args if f.is_Mul else (f,))]
+    number = sp.Mul(*(part for part in parts if part.is_Number))
+    rest = [part for part in parts if not part.is_Number]
+    plain = all(part.is_Symbol or part.is_Add for part in rest) and len(set(rest)) == len(rest)
+    if not plain or not number.is_Rational or len(rest) < 2 or number.is_zero:
+        return sp.Mul(*factors)
+    rest.sort(key=place)
+    return sp.Mul._from_args(rest if number is sp.S.One else [number, *rest], is_commutative=True)
 
 
 @lru_cache(_KEPT)

@@ -11,6 +11,7 @@ import sympy as sp
 from sympy.core.basic import ordering_of_classes
 
 _ONE, _ZERO = sp.S.One, sp.S.Zero
+_RANKS = {name: k for k, name in enumerate(ordering_of_classes)}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -56,7 +57,7 @@ def scaled(form: Linear, by: int) -> Linear:
 def sum_of(*forms: Linear) -> Any:
     """The expression of a sum of forms."""
     form = forms[0] if len(forms) == 1 else _merged(list(forms))
-    terms = [multiple(f, s) for s, f in sorted(form.factors.items(), key=_place)]
+    terms = sorted((multiple(f, s) for s, f in form.factors.items()), key=place)
     if form.number is not _ZERO:
         terms.insert(0, form.number)
     return sp.Add._from_args(terms, is_commutative=True)
@@ -69,12 +70,13 @@ def multiple(factor: Any, symbol: Any) -> Any:
     return sp.Mul._from_args((factor, symbol), is_commutative=True)
 
 
-def _place(term: tuple[Any, Any]) -> tuple[Any, ...]:
-    """Symbols by their names, then multiples by their factors: see `Basic.compare` of SymPy."""
-    symbol, factor = term
-    if factor is _ONE:
-        return (0, symbol.name)
-    return (1, ordering_of_classes.index(type(factor).__name__), factor.p, factor.q, symbol.name)
+@lru_cache(1 << 16)
+def place(expr: Any) -> tuple[Any, ...]:
+    """What SymPy orders terms and factors by: see its `Basic.compare`."""
+    name = type(expr).__name__
+    rank = _RANKS.get(name, len(_RANKS))
+    content = tuple(map(place, expr.args)) if expr.args else expr._hashable_content()
+    return rank, "" if rank < len(_RANKS) else name, len(content), content
 
 
 def is_negative(form: Linear) -> bool:

@@ -40,7 +40,7 @@ def settle(
                 signs.turn([symbol])
     turned = {symbol for symbol, sign in signs.sign.items() if sign == -1}
     changes = {symbol: -symbol for symbol in turned}
-    expressions = {s.target: s.expr.xreplace(changes) for s in builder.statements}
+    expressions = {s.target: algebra.replaced(s.expr, changes) for s in builder.statements}
     builder.rewrite(expressions | {s: -expressions[s] for s in turned}, changes)
     for symbol in turned:
         meaning.turn(symbol)

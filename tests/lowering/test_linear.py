@@ -39,3 +39,18 @@ def test_they_are_those_of_sympy(seed: int) -> None:
         other = draw.choice([*SYMBOLS, *FACTORS, sp.S.Zero])
         assert _same(algebra.product(terms[0], other), terms[0] * other)
         assert _same(algebra.product(other, terms[0]), other * terms[0])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_replaced_is_what_sympy_replaces(seed: int) -> None:
+    draw = random.Random(seed)
+    made: list[Any] = [*SYMBOLS, *(f * s for f in FACTORS[-6:] for s in SYMBOLS[:3])]
+    made += [1 / SYMBOLS[0], SYMBOLS[1] ** 2, sp.sqrt(SYMBOLS[2]), sp.sin(SYMBOLS[3]), sp.S.Zero]
+    for _ in range(80):
+        made.append(draw.choice((sp.Add, sp.Mul))(*draw.choices(made, k=draw.randint(2, 4))))
+        if sp.count_ops(made[-1]) > 25:
+            made.pop()
+        changes = {s: draw.choice(made) for s in draw.sample(SYMBOLS, 2)}
+        expr = draw.choice(made)
+        if all(sp.count_ops(value) < 8 for value in changes.values()):
+            assert _same(algebra.replaced(expr, changes), expr.xreplace(changes))
