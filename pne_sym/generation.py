@@ -10,6 +10,7 @@ PosixPath('generated/stewart')
 from __future__ import annotations
 
 import contextlib
+import gc
 import json
 import multiprocessing
 import os
@@ -185,7 +186,9 @@ def compile_many(
         yield from (Compiled(item, compile_model(item, names)) for item, names in todo)
         return
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(jobs, mp_context=context)
+    pool = ProcessPoolExecutor(
+        jobs, mp_context=context, initializer=gc.set_threshold, initargs=gc.get_threshold()
+    )
     try:
         with _interrupts_held():  # the first of these starts the workers
             outcomes = [pool.submit(_compile_in_worker, *each) for each in todo]

@@ -69,15 +69,19 @@ class ScalarPrinter(StrPrinter):
     def _print_Float(self, expr: Any) -> str:
         return self._number(float(expr))
 
+    def _print(self, expr: Any, **settings: Any) -> str:
+        """The text of what is found most often, without a search for its method."""
+        if expr.is_Symbol:
+            return self._print_Symbol(expr)
+        if expr.is_Mul:
+            return self._print_Mul(expr)
+        return self._print_Add(expr) if expr.is_Add else str(super()._print(expr, **settings))
+
     def _print_Add(self, expr: Any, order: Any = None) -> str:
-        terms = sorted(
-            expr.args, key=lambda t: (t.could_extract_minus_sign(), sp.default_sort_key(t))
-        )
         text = ""
-        for term in terms:
-            negative = term.could_extract_minus_sign()
+        for negative, term in _terms(expr):
             level = PRECEDENCE["Mul" if negative else "Add"]  # a sum behind a minus needs them
-            body = self.parenthesize(-term if negative else term, level)
+            body = self.parenthesize(term, level)
             text += (
                 f" - {body}"
                 if negative and text
@@ -88,13 +92,9 @@ class ScalarPrinter(StrPrinter):
         return text
 
     def _print_Mul(self, expr: Any) -> str:
-        coefficient, rest = expr.as_coeff_Mul()
-        if coefficient < 0:
+        if _is_negative(expr):
             return f"-{self.parenthesize(-expr, PRECEDENCE['Mul'])}"
-        factors = sorted(expr.args, key=sp.default_sort_key)
-        top = [f for f in factors if not (f.is_Pow and f.exp.is_negative)]
-        bottom = [sp.Pow(f.base, -f.exp) for f in factors if f.is_Pow and f.exp.is_negative]
-        del rest
+        top, bottom = _factors(expr)
         text = "*".join(self.parenthesize(f, PRECEDENCE["Mul"]) for f in top) or self._number(1)
         for factor in bottom:
             text += f"/{self.parenthesize(factor, PRECEDENCE['Pow'])}"
@@ -114,11 +114,12 @@ class ScalarPrinter(StrPrinter):
 
     def parenthesize(self, item: Any, level: int, strict: bool = False) -> str:
         """Parentheses where the precedence needs them; for powers, which are products, behind /."""
-        own, text = precedence(item), self._print(item)
+        if item.is_Symbol:
+            return self._print_Symbol(item)
+        own, text = _level(item), self._print(item)
         return (
             f"({text})"
-            if own < level
-            or (own == level and not strict and level == PRECEDENCE["Pow"] and not item.is_Symbol)
+            if own < level or (own == level and not strict and level == PRECEDENCE["Pow"])
             else str(text)
         )
 
@@ -145,6 +146,66 @@ class ScalarPrinter(StrPrinter):
     def emptyPrinter(self, expr: Any) -> str:
         """Refuse what is not in the closed set."""
         raise TypeError(f"no {type(expr).__name__} in generated code")
+
+
+@lru_cache(1 << 16)
+def _terms(expr: Any) -> tuple[tuple[bool, Any], ...]:
+    """Terms of a sum as they are printed: whether each is negative, and what it is without sign."""
+    told = ((_is_negative(term), term) for term in expr.args)
+    ordered = sorted(told, key=lambda t: (t[0], sort_key(t[1])))
+    return tuple((minus, -term if minus else term) for minus, term in ordered)
+
+
+@lru_cache(1 << 16)
+def _factors(expr: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """Factors of a product as they are printed, and what it is divided by."""
+    factors = sorted(expr.args, key=sort_key)
+    under = [f for f in factors if f.is_Pow and f.exp.is_negative]
+    bottom = tuple(sp.Pow(f.base, -f.exp) for f in under)
+    return tuple(f for f in factors if f not in under), bottom
+
+
+def _is_negative(term: Any) -> bool:
+    """Whether a minus sign stands before it."""
+    if term.is_Mul:
+        return bool(term.args[0].is_Number and term.args[0].is_negative)
+    return bool(not term.is_Symbol and term.could_extract_minus_sign())
+
+
+def _level(expr: Any) -> int:
+    """How tightly its text binds."""
+    if expr.is_Mul:
+        return int(PRECEDENCE["Add" if _is_negative(expr) else "Mul"])
+    level: int = PRECEDENCE["Add"] if expr.is_Add else precedence(expr)
+    return level
+
+
+@lru_cache(1 << 16)
+def sort_key(expr: Any) -> Any:
+    """SymPy's `default_sort_key`, quicker for what programs are made of."""
+    if expr.is_Symbol:
+        return _SYMBOL, (1, (expr.name,)), _ONE, sp.S.One
+    if expr.is_Pow and (expr.base.is_Symbol or expr.base.is_Add):
+        return (*sort_key(expr.base)[:2], sp.default_sort_key(expr.exp), sp.S.One)
+    if expr.is_Add and all(_is_multiple(term) for term in expr.args):
+        keys = sorted(map(sort_key, expr.args))
+        return sp.Add.class_key(), (len(keys), tuple(keys)), _ONE, sp.S.One
+    if not expr.is_Mul:
+        return sp.default_sort_key(expr)
+    factor, rest = (expr.args[0], expr.args[1:]) if expr.args[0].is_Number else (1, expr.args)
+    if len(rest) == 1:
+        return (*sort_key(rest[0])[:3], factor)
+    keys = sorted(map(sort_key, rest))
+    return sp.Mul.class_key(), (len(keys), tuple(keys)), _ONE, sp.sympify(factor)
+
+
+def _is_multiple(term: Any) -> bool:
+    """Whether it is a symbol, or a number times one."""
+    number, *others = term.args if term.is_Mul else (sp.S.One, term)
+    return bool(number.is_Number and len(others) == 1 and others[0].is_Symbol)
+
+
+_SYMBOL, _ONE = sp.Symbol.class_key(), sp.default_sort_key(sp.S.One)
 
 
 def wrap(text: str, width: int, indent: str) -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import sys
 from collections.abc import Sequence
 
@@ -20,6 +22,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             reader of a pipe left.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
+    keep_what_is_made()
     try:
         from pne_sym.cli.app import app
         from pne_sym.cli.console import discard_output, prepare_streams
@@ -34,3 +37,12 @@ def main(argv: Sequence[str] | None = None) -> None:
         discard_output()
         sys.stderr.write(f"pne-gen: error: cannot write to standard output: {error.strerror}\n")
         sys.exit(2)
+
+
+def keep_what_is_made() -> None:
+    """Look for cyclic garbage only every million objects, and no more at the end.
+
+    What a run makes lives until its end: the collector would go through it again and again.
+    """
+    gc.set_threshold(1_000_000)
+    atexit.register(gc.freeze)

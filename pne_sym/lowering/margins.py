@@ -51,5 +51,9 @@ class Margins:
         return ratio if guard.power == 1 else self.b.let(sp.sqrt(ratio), "pivot_root")
 
     def _put(self, array: str, stage: Stage, values: list[Any], legs: tuple[int, ...]) -> None:
-        least = self.b.let(sp.Min(*values), f"least_{array}") if values else _NOTHING_TESTED
+        least = (
+            self.b.let(sp.Min(*values, evaluate=False), f"least_{array}")
+            if values
+            else _NOTHING_TESTED
+        )
         self.stores.append((stage, Store(array, least, legs, equation=self.b.equation)))

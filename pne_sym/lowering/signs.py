@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from operator import attrgetter
 from typing import Any
 
 import sympy as sp
@@ -39,7 +40,7 @@ def settle(
                 signs.turn([symbol])
     turned = {symbol for symbol, sign in signs.sign.items() if sign == -1}
     changes = {symbol: -symbol for symbol in turned}
-    expressions = {s.target: s.expr.xreplace(changes) for s in builder.statements}
+    expressions = {s.target: algebra.replaced(s.expr, changes) for s in builder.statements}
     builder.rewrite(expressions | {s: -expressions[s] for s in turned}, changes)
     for symbol in turned:
         meaning.turn(symbol)
@@ -106,9 +107,11 @@ class _Signs:
         self.opposite = {s for s in self.form if meaning.is_opposite(s)}
         self.users: dict[Any, list[Any]] = {}
         for s in statements:
-            for symbol in sorted(algebra.symbols(s.expr), key=str):
+            for symbol in sorted(algebra.symbols(s.expr), key=attrgetter("name")):
                 self.users.setdefault(symbol, []).append(s.target)
-        self.uses = {s.target: sorted(algebra.symbols(s.expr), key=str) for s in statements}
+        self.uses = {
+            s.target: sorted(algebra.symbols(s.expr), key=attrgetter("name")) for s in statements
+        }
         self.stored: dict[Any, list[int]] = {}
         for value in stored:
             sign, symbol = algebra.signed(sp.sympify(value))

@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.lowering.algebra import operations, symbols
+from pne_sym.lowering.algebra import operations, replaced, symbols
 from pne_sym.lowering.builder import Statement
 from pne_sym.program.ir import Stage, Store
 
@@ -24,13 +24,13 @@ def inline_single_use(
     """Put unnamed values that are used once into the statement that uses them."""
     uses: dict[Any, int] = {}
     for statement in statements:
-        for symbol in symbols(statement.expr):
-            uses[symbol] = uses.get(symbol, 0) + _occurrences(statement.expr, symbol)
+        for symbol, times in _occurrences(statement.expr).items():
+            uses[symbol] = uses.get(symbol, 0) + times
     for _, store in stores:
-        for symbol in sp.sympify(store.value).free_symbols:
+        for symbol in symbols(sp.sympify(store.value)):
             uses[symbol] = uses.get(symbol, 0) + 2  # outputs keep their names
     for guard in guards:
-        for symbol in (*guard.value.free_symbols, *guard.scale.free_symbols):
+        for symbol in (*symbols(guard.value), *symbols(guard.scale)):
             uses[symbol] = uses.get(symbol, 0) + 2
     inlined: dict[Any, Any] = {}
     kept: list[Statement] = []
@@ -50,17 +50,7 @@ def inline_single_use(
         ):
             inlined[statement.target] = expr
             continue
-        kept.append(
-            Statement(
-                statement.target,
-                expr,
-                statement.stage,
-                statement.equation,
-                statement.total_of,
-                statement.is_named,
-                statement.hint,
-            )
-        )
+        kept.append(statement if expr is statement.expr else replace(statement, expr=expr))
     return _needed(kept, stores, guards)
 
 
@@ -68,8 +58,8 @@ def _needed(
     statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any]
 ) -> list[Statement]:
     """The statements that are still used: terms may cancel where a value is put in place."""
-    wanted = {s for _, store in stores for s in sp.sympify(store.value).free_symbols}
-    wanted |= {s for g in guards for s in (*g.value.free_symbols, *g.scale.free_symbols)}
+    wanted = {s for _, store in stores for s in symbols(sp.sympify(store.value))}
+    wanted |= {s for g in guards for s in (*symbols(g.value), *symbols(g.scale))}
     found: list[Statement] = []
     for statement in reversed(statements):
         if statement.target in wanted:
@@ -113,7 +103,7 @@ def renamed(
     """Statements, stores and guards with other names."""
 
     def again(expr: Any) -> Any:
-        return sp.sympify(expr).xreplace(names)
+        return replaced(sp.sympify(expr), names)
 
     return (
         [replace(s, target=names.get(s.target, s.target), expr=again(s.expr)) for s in statements],
@@ -123,23 +113,38 @@ def renamed(
 
 
 @lru_cache(1 << 16)
-def _occurrences(expr: Any, symbol: Any) -> int:
-    if expr == symbol:
-        return 1
-    return sum(_occurrences(arg, symbol) for arg in expr.args)
+def _occurrences(expr: Any) -> dict[Any, int]:
+    """How often each symbol stands in it."""
+    if expr.is_Symbol:
+        return {expr: 1}
+    found: dict[Any, int] = {}
+    for arg in expr.args:
+        for symbol, times in _occurrences(arg).items():
+            found[symbol] = found.get(symbol, 0) + times
+    return found
 
 
 @lru_cache(1 << 16)  # functions share statements
 def _fits(user: Any, target: Any, expr: Any) -> bool:
     """Whether SymPy keeps the operation count when the value is put in place."""
     combined = _replaced(user, frozenset({(target, expr)}))
-    if combined.has(sp.Abs):  # what SymPy makes of the root of a square; programs have no such node
-        return False
-    if any(abs(p.exp) != sp.Rational(1, 2) for p in combined.atoms(sp.Pow) if not p.exp.is_Integer):
-        return False
-    if any(p.exp.is_Integer and p.exp > 1 and not p.base.is_Symbol for p in combined.atoms(sp.Pow)):
-        return False  # a power is printed as a product: its base would be computed again
-    return operations(combined) <= operations(user) + operations(expr) <= 2 * _LONGEST
+    return operations(combined) <= operations(user) + operations(
+        expr
+    ) <= 2 * _LONGEST and _is_in_programs(combined)
+
+
+@lru_cache(1 << 16)
+def _is_in_programs(expr: Any) -> bool:
+    """Whether it is made of what programs have, and is printed without computing a part twice."""
+    if expr.is_Pow:
+        whole = expr.exp.is_Integer
+        if (whole and expr.exp > 1 and not expr.base.is_Symbol) or (
+            not whole and abs(expr.exp) != sp.Rational(1, 2)
+        ):
+            return False  # a power is printed as a product: its base would be computed again
+    elif isinstance(expr, sp.Abs):
+        return False  # what SymPy makes of the root of a square
+    return all(map(_is_in_programs, expr.args))
 
 
 def _substitute(expr: Any, inlined: dict[Any, Any]) -> Any:
@@ -149,4 +154,4 @@ def _substitute(expr: Any, inlined: dict[Any, Any]) -> Any:
 
 @lru_cache(1 << 16)
 def _replaced(expr: Any, pairs: frozenset[tuple[Any, Any]]) -> Any:
-    return expr.xreplace(dict(pairs))
+    return replaced(expr, dict(pairs))

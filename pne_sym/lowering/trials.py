@@ -25,15 +25,15 @@ class Trial:
         value: its components.
         stored: entries of tables that were made with it.
         forgotten: statements that were.
-        is_plain: there was one way for all that it is made of, so that it comes out the same
-            wherever it is made anew.
+        is_final: all that it is made of was made in the cheapest way, so that it comes out the
+            same wherever it is made anew.
     """
 
     cost: float
     value: Any
     stored: list[tuple[dict[Any, Any], Any, Any]]
     forgotten: Undone
-    is_plain: bool
+    is_final: bool
 
 
 class Trials:
@@ -43,7 +43,7 @@ class Trials:
         self._b = builder
         self._undo: list[tuple[dict[Any, Any], Any]] = []
         self._depth = 0
-        self._choices = 0
+        self._cut = 0  # choices that were not made: the first way that leads there was taken
 
     def store(self, table: dict[Any, Any], key: Any, value: _T) -> _T:
         """Keep a value in a table; it goes when the trial in which it is made is forgotten."""
@@ -55,7 +55,7 @@ class Trials:
         """Make a value and forget it."""
         mark, undo, equation = self._b.mark(), len(self._undo), self._b.equation
         depth, self._depth = self._depth, self._depth + 1
-        choices = self._choices
+        cut = self._cut
         value: Any = None
         cost = float("inf")
         try:
@@ -70,20 +70,20 @@ class Trials:
         del self._undo[undo:]
         forgotten = self._b.rollback(mark)
         self._b.equation = equation
-        return Trial(cost, value, stored, forgotten, self._choices == choices)
+        return Trial(cost, value, stored, forgotten, self._cut == cut)
 
     def cheapest(self, makers: Sequence[Callable[[], _T]]) -> _T:
         """The value of the cheapest way; ties go to the first."""
         if len(makers) == 1:
             return makers[0]()
-        self._choices += 1
         if self._depth < _MAX_DEPTH:
             trials = [self.attempt(make) for make in makers]
             best = min(range(len(makers)), key=lambda k: trials[k].cost)
-            if trials[best].is_plain and trials[best].cost < float("inf"):
+            if trials[best].is_final and trials[best].cost < float("inf"):
                 return self._adopt(trials[best])  # type: ignore[no-any-return]
             # Made anew: its own choices are then tried as deep as this one.
             return makers[best]()
+        self._cut += 1
         for make in makers:
             trial = self.attempt(make)
             if trial.cost < float("inf"):

@@ -88,3 +88,13 @@ def test_no_way_at_all_is_the_first_ones_error() -> None:
     with pytest.raises(NotYetError, match="later"):
         ways.trials.cheapest([ways.too_early, ways.too_early])
     assert ways.trials.cheapest([ways.cheap, ways.dear]) == ways.table["way"]
+
+
+def test_what_was_tried_with_all_its_own_ways_is_not_made_again() -> None:
+    ways = _Ways()
+    found = ways.trials.cheapest(
+        [lambda: ways.trials.cheapest([ways.dear, ways.cheap]), ways.too_early]
+    )
+    assert str(found) == "cheap"
+    assert ways.table == {"way": found}
+    assert ways.run == ["dear", "cheap", "too early"]
