@@ -135,8 +135,9 @@ class _Preparation:
 def _entry(parameter: ParameterField, index: int) -> str:
     """Where an entry of a parameter stands."""
     at = parameter.name + ("[own]" if parameter.leg_type else "")
-    if parameter.shape == (3, 3):
-        return f"{at}[{index // 3}][{index % 3}]"
+    if len(parameter.shape) == 2:
+        row, column = divmod(index, parameter.shape[1])
+        return f"{at}[{row}][{column}]"
     return f"{at}[{index}]" if parameter.shape else at
 
 
@@ -158,6 +159,7 @@ _CHECKS: dict[Rule, tuple[str, ...]] = {
     Rule.PLANAR_INERTIA: ("all_planar_inertias",),
     Rule.ROTATION: ("all_rotations",),
     Rule.PLANAR_ROTATION: ("all_rotations", "all_about_z"),
+    Rule.INVERTIBLE: (),
 }
 """What a parameter must be -> functions that check it."""
 
@@ -171,6 +173,9 @@ def parameter_checks(bundle: Bundle) -> list[str]:
         lines.append(f"ok &= all_within({first}, {times(count, size)});")
         lines += [f"ok &= all_zero({first} + {k}, {count}, {size});" for k in f.zeros]
         lines += [f"ok &= {check}({first}, {count});" for check in _CHECKS[f.rule]]
+        if f.rule is Rule.INVERTIBLE:
+            lines.append(f"real work[{size}];")
+            lines.append(f"ok &= is_invertible({first}, {f.shape[0]}, work);")
     for n, relation in enumerate(bundle.derivation.parameters.relations):
         count, other, step = count_of(relation.leg_type), f"fixed_{n}", 0
         if isinstance(relation.second, str):

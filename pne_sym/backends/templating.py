@@ -11,6 +11,7 @@ from typing import Any
 import jinja2
 
 from pne_sym.model.body import RELATIVE
+from pne_sym.model.coupling import LEAST
 from pne_sym.model.values import LARGEST, ROUNDING, SNAP
 from pne_sym.program import interpret, iteration, linear, operations
 
@@ -19,6 +20,7 @@ LIMITS = {
     "relative": f"{RELATIVE:g}",
     "rounding": f"{ROUNDING:g}",
     "snap": f"{SNAP:g}",
+    "independent": f"{LEAST:g}",
 }
 """What the reader of specifications allows, for the checks of parameters at run time."""
 FIXED = {

@@ -45,6 +45,7 @@ class Law(enum.StrEnum):
     FRICTION = "friction"
     SPRING = "spring"
     ROTOR = "rotor"
+    COUPLING = "coupling"
     LIMIT = "limit"
     MOVING_FRAME = "moving frame"
     ENERGY = "energy"

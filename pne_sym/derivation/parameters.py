@@ -42,6 +42,8 @@ class Rule(enum.StrEnum):
     """At least `values.SNAP`: its square must not vanish."""
     NONZERO = "nonzero"
     """Of that size at least."""
+    INVERTIBLE = "invertible"
+    """A matrix with an inverse."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +123,7 @@ class ParameterTable:
             if index in parameter.zeros:
                 symbols.append(sp.S.Zero)
                 continue
-            symbol = sp.Symbol(entry_name(parameter.name, parameter.shape, index), real=True)
+            symbol = sp.Symbol(entry_name(parameter, index), real=True)
             if symbol.name in self.entries:
                 raise NameTakenError(symbol.name)
             self.entries[symbol.name] = (parameter, index)
@@ -151,8 +153,12 @@ class ParameterTable:
         return symbol
 
 
-def entry_name(name: str, shape: tuple[int, ...], index: int) -> str:
-    """Name of one entry: field_x, field_xy, or the field's own name."""
+def entry_name(parameter: ParameterField, index: int) -> str:
+    """Name of one entry: field_x, field_xy, field_1_2 of what has no axes, or the field's own."""
+    name, shape = parameter.name, parameter.shape
+    if parameter.rule is Rule.INVERTIBLE:
+        row, column = divmod(index, shape[1])
+        return f"{name}_{row + 1}_{column + 1}"
     if shape == ():
         return name
     if shape == (3,):

@@ -13,6 +13,7 @@ from pne_sym.derivation import Derivation, Output
 from pne_sym.lowering.builder import Atom, Builder, Guard, Statement
 from pne_sym.lowering.closures import closures, given_displacements
 from pne_sym.lowering.components import Lowering
+from pne_sym.lowering.coupling import with_coupling
 from pne_sym.lowering.inputs import leg_inputs, unpack
 from pne_sym.lowering.margins import Margins
 from pne_sym.lowering.meaning import Meaning
@@ -55,7 +56,7 @@ GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
     ),
     (("potential", ("potential",)),),
     (("dissipation", ("dissipation",)),),
-    (("motors", ("motor_rates", "per_turn")),),
+    (("motors", ("motor_rates", "per_turn", "actuated_rates", "ratios", "coupling")),),
     (("joint_margins", ("margins",)),),
     (("condition", ("lengths",)),),
 )
@@ -73,7 +74,8 @@ def lower(derivation: Derivation) -> Program:
     _declare(derivation, builder)
     shapes = _shapes(derivation)
     slices, lowerings = [], []
-    for group in (*GROUPS, *_closure_groups(derivation)):
+    groups = with_coupling(GROUPS, {output.array for output in derivation.outputs})
+    for group in (*groups, *_closure_groups(derivation)):
         together = {a for _, arrays in group for a in arrays}
         stores, lowering = _cheapest_stores(derivation, builder, together)
         lowerings.append(lowering)
@@ -471,7 +473,8 @@ def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
         "constraint_direction": (n["NC"], wide),
         "potential": (1,),
         **({"dissipation": (1,)} if _is_made(derivation, "dissipation") else {}),
-        **{name: (n["NU"],) for name in ("motor_rates", "per_turn") if _is_made(derivation, name)},
+        **{name: (n["NU"],) for name in _OF_MOTORS if _is_made(derivation, name)},
+        **({"coupling": (n["NU"], n["NU"])} if _is_made(derivation, "coupling") else {}),
         **({"margins": (n["NJ"],)} if _is_made(derivation, "margins") else {}),
         "constraints": (n["NC"],),
         "constraint_bias": (n["NC"],),
@@ -479,6 +482,17 @@ def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
         "pivots": (legs,),
         "reach": (legs,),
     }
+
+
+_OF_MOTORS = (
+    "motor_rates",
+    "per_turn",
+    "ratios",
+    "actuated_rates",
+    "actuated_accelerations",
+    "actuated_bias",
+    "rotor_roots",
+)
 
 
 def _is_made(derivation: Derivation, array: str) -> bool:

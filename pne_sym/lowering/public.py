@@ -124,6 +124,9 @@ class Writer:
         names += ["q0"] * self.guessed
         arguments = tuple(self.given(n) for n in names)
         steps = tuple(algorithm.steps)
+        if more.get("counted") and any("rotor_roots" in f.arrays for f in runs):
+            left_out = [more["also"]] if "also" in more else []
+            more["also"] = " and ".join(["the products with coupled rotors", *map(str, left_out)])
         return PublicFunction(name, meaning, arguments, outputs, steps, group, **more)  # type: ignore[arg-type]
 
     # ---- the program's own functions -----------------------------------------------------------
@@ -360,10 +363,12 @@ class Writer:
 
     def _leg_reactions(self) -> PublicFunction:
         a = Algorithm()
-        names = ["required", "H", *(["Hk"] if self.constrained else [])]
-        required, *actuators = a.run("required", self.program, *names)
-        needed = a.apply("subtract", required, self._external(a))
-        efforts = self._forces(a, needed, actuators)
+        given = self.program.functions["required"].arrays
+        values = dict(zip(given, a.run("required", self.program, *given), strict=True))
+        actuators = [values[name] for name in ("H", "Hk") if name in values]
+        needed = a.apply("subtract", values["required"], self._external(a))
+        tau, *lam = self._forces(a, needed, actuators)
+        efforts = [a.without_rotors(tau, values), *lam]
         arrays = self.program.functions["legs"].arrays
         shape = self.program.shapes["leg_force"]
         found = dict(zip(arrays, a.run("legs", self.program, *arrays), strict=True))

@@ -116,13 +116,26 @@ def _momentum(w: Writer) -> PublicFunction:
 
 def _motors(w: Writer) -> list[PublicFunction]:
     rates, torques = Algorithm(), Algorithm()
-    turning, _ = rates.run("motors", w.program, "motor_rates", "per_turn")
-    _, per_turn = torques.run("motors", w.program, "motor_rates", "per_turn")
-    torque = torques.apply("multiply", per_turn, w.given("tau").value)
+    coupled = "coupling" in w.program.shapes
+    if coupled:
+        qd, ratios, coupling = rates.run(
+            "motors", w.program, "actuated_rates", "ratios", "coupling"
+        )
+        turning = rates.apply("multiply", ratios, rates.apply("times", coupling, qd))
+        per_turn, coupling = torques.run("motors", w.program, "per_turn", "coupling")
+        before = torques.apply("transposed", coupling)
+        before = torques.apply("solve", before, w.given("tau").value)
+    else:
+        (turning,) = rates.run("motors", w.program, "motor_rates")
+        (per_turn,) = torques.run("motors", w.program, "per_turn")
+        before = w.given("tau").value
+    torque = torques.apply("multiply", per_turn, before)
+    along = "the coupling times rates of the joints" if coupled else "rate"
+    given = "the inverse of the coupling, transposed, times tau" if coupled else "tau"
     return [
         w.function(
             "motor_rates",
-            "Rates of the motors: gear ratio times rate, in the order of tau.",
+            f"Rates of the motors: gear ratio times {along}, in the order of tau.",
             "X V",
             rates,
             w.made(turning, "motor_rates", "of the motors [rad/s]", "NU"),
@@ -130,7 +143,7 @@ def _motors(w: Writer) -> list[PublicFunction]:
         ),
         w.function(
             "motor_torques",
-            "Torques of the motors that give tau: tau over the gear ratio, rotors included.",
+            f"Torques of the motors that give tau: {given} over the gear ratio, rotors included.",
             "X V A tau",
             torques,
             w.made(torque, "motor_torques", "of the motors [N m]", "NU"),

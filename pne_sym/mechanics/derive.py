@@ -34,6 +34,7 @@ from pne_sym.mechanics.leg_motion import write_motion
 from pne_sym.mechanics.link_forces import LinkWriter
 from pne_sym.mechanics.links import introduce_bodies
 from pne_sym.mechanics.mobility import check_solvable, mobility
+from pne_sym.mechanics.motors import write_motors
 from pne_sym.mechanics.moving_base import introduce_base
 from pne_sym.mechanics.notation import with_symbols
 from pne_sym.mechanics.orientation import orientation_rows, orientation_signs
@@ -85,7 +86,7 @@ def _derive(book: Book, manipulator: Manipulator) -> Derivation:
     writer.blocks()
     _potential(book, platform, writer, legs)
     _dissipation(book, legs)
-    _motors(book, manipulator, legs)
+    write_motors(book, manipulator, legs)
     for leg in legs:
         write_margins(book, leg.g, leg.motion.chain.q, _starts(manipulator))
     write_lengths(book, [leg.g for leg in legs])
@@ -163,7 +164,8 @@ def _derive_leg(
         + (_COMPOSITE if g.composite else "")
         + (_MOMENTS if g.pairs else "")
     )
-    forces = write_joint_forces(book, g, motion)
+    coupled = manipulator.coupling is not None
+    forces = write_joint_forces(book, g, motion, coupled=coupled)
     book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", text, prefix)
     links = LinkWriter(book, platform.gravity, motion, bodies)
     dynamics = DynamicsWriter(links, forces).run()
@@ -351,29 +353,6 @@ def _closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None
         for k, j in enumerate(joints):
             if g.turns(j):
                 put(f"jacobian_{name}", Dot(g.spin(j), n), ((0, i * width + k),))
-
-
-def _motors(book: Book, manipulator: Manipulator, legs: list[Leg]) -> None:
-    """Rates of the motors, and what turns forces of joints into torques, where there are motors.
-
-    An actuated joint without data of its motor is driven directly.
-    """
-    if not any(leg.dynamics.forces.motors for leg in legs):
-        return
-    order = [
-        (i, j)
-        for i, leg in enumerate(manipulator.legs)
-        for j, joint in enumerate(leg.joints, 1)
-        if joint.actuated
-    ]
-    for leg in legs:
-        indices, motor = leg.g.leg_type.indices, leg.dynamics.forces.motors
-        for j, joint in enumerate(leg.g.leg_type.model.joints, 1):
-            if joint.actuated:
-                rows = tuple(order.index((i, j)) for i in indices)
-                both = motor.get(j, (leg.motion.qd[j], sp.S.One))
-                for array, value in zip(("motor_rates", "per_turn"), both, strict=True):
-                    book.outputs.append(Output(array, value, ((0, 0),), (), leg.name, rows))
 
 
 def _dissipation(book: Book, legs: list[Leg]) -> None:

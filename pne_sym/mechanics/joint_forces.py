@@ -45,6 +45,23 @@ per_turn_#   | n^{-1}_{#}               | LUMPING constant
 
 
 @dataclass(frozen=True)
+class Motor:
+    """The motor of a joint.
+
+    Attributes:
+        felt: inertia of the rotor along the joint.
+        ratio: angle of the motor per displacement.
+        per_turn: its inverse.
+        rate: of the motor; None where it is coupled to other joints too.
+    """
+
+    felt: Any = sp.S.Zero
+    ratio: Any = sp.S.One
+    per_turn: Any = sp.S.One
+    rate: Any = None
+
+
+@dataclass(frozen=True)
 class InJoint:
     """What acts in one joint; zeros where it has no such thing.
 
@@ -52,15 +69,15 @@ class InJoint:
         friction: force against the rate.
         spring: force against the displacement.
         stored: energy of the spring.
-        rotor: inertia of the motor along the joint.
-        motor: rate of the motor, and the displacement of the joint per angle of it.
+        rotor: inertia of the motor along the joint; zero where motors are coupled.
+        motor: the motor.
     """
 
     friction: Any = sp.S.Zero
     spring: Any = sp.S.Zero
     stored: Any = sp.S.Zero
     rotor: Any = sp.S.Zero
-    motor: tuple[Any, Any] | None = None
+    motor: Motor | None = None
 
 
 @dataclass(frozen=True)
@@ -93,7 +110,7 @@ class JointForces:
         return self.own.get(j, InJoint()).rotor * self.qdd[j]
 
     @property
-    def motors(self) -> dict[int, tuple[Any, Any]]:
+    def motors(self) -> dict[int, Motor]:
         """Motors by joint."""
         return {j: own.motor for j, own in self.own.items() if own.motor}
 
@@ -109,15 +126,26 @@ class JointForces:
         return sp.Add(*(own.stored for own in self.own.values()))
 
 
-def write_joint_forces(book: Book, g: LegGeometry, motion: LegMotion) -> JointForces:
-    """The chapter on friction, springs and rotors of a leg, where there are any."""
+def write_joint_forces(
+    book: Book, g: LegGeometry, motion: LegMotion, *, coupled: bool = False
+) -> JointForces:
+    """The chapter on friction, springs and rotors of a leg, where there are any.
+
+    Args:
+        book: of the derivation.
+        g: of the leg.
+        motion: of the leg.
+        coupled: motors turn with several joints; their rotors are no matter of one leg.
+    """
     q, turning = motion.chain.q, motion.end_turning
     joints, end = g.leg_type.model.joints, g.leg_type.model.platform_joint.friction
     if not (end or any(j.friction or j.spring or j.actuator for j in joints)):
         return JointForces(motion.qd, motion.qdd)
     title = f"Forces in the joints of a {g.leg_type.architecture} leg"
-    book.chapter(f"{g.leg_type.name}-J", title, _text(joints, end), g.leg_type.name)
-    writer = _Writer(book, g)
+    book.chapter(
+        f"{g.leg_type.name}-J", title, _text(joints, end, coupled=coupled), g.leg_type.name
+    )
+    writer = _Writer(book, g, coupled=coupled)
     own = {j: writer.joint(j, joint, motion.qd[j], q) for j, joint in enumerate(joints, 1)}
     if not end or turning == ZeroVector:
         return JointForces(motion.qd, motion.qdd, own)
@@ -126,17 +154,18 @@ def write_joint_forces(book: Book, g: LegGeometry, motion: LegMotion) -> JointFo
     return JointForces(motion.qd, motion.qdd, own, moment, relative, spins)
 
 
-def _text(joints: Sequence[Joint], end: Friction | None) -> str:
+def _text(joints: Sequence[Joint], end: Friction | None, *, coupled: bool) -> str:
     """What the chapter begins with: of what there is."""
     found = [(joint.friction, joint.spring, joint.actuator) for joint in joints]
-    sentences = (_FRICTION, _SPRINGS, _ROTORS)
+    sentences = (_FRICTION, _SPRINGS, _COUPLED if coupled else _ROTORS)
     said = [text for k, text in enumerate(sentences) if any(of[k] for of in found)]
     said += [_FRICTION] * bool(end and _FRICTION not in said) + [_END] * bool(end)
     return "".join((_ALL, *said)).rstrip()
 
 
 class _Writer:
-    def __init__(self, book: Book, g: LegGeometry) -> None:
+    def __init__(self, book: Book, g: LegGeometry, *, coupled: bool) -> None:
+        self.coupled = coupled
         self.g, self.parameters = g, JointParameters(book, g.leg_type)
         self.eq = Writer(book, g, _TERMS)
 
@@ -150,8 +179,8 @@ class _Writer:
             force, stored = self._spring(at, j, q[j])
             found = replace(found, spring=force, stored=stored)
         if joint.actuator:
-            rotor, motor = self._rotor(at, j, rate)
-            found = replace(found, rotor=rotor, motor=motor)
+            motor = self._motor(at, j, rate)
+            found = replace(found, rotor=sp.S.Zero if self.coupled else motor.felt, motor=motor)
         return found
 
     def _law(self, at: Place, square: Any, prefix: str = "") -> Any:
@@ -181,13 +210,13 @@ class _Writer:
         force = self.eq("spring_#", stiffness * (displacement - rest), j)
         return force, self.eq("stored_#", force * (displacement - rest) / 2, j)
 
-    def _rotor(self, at: Place, j: int, rate: Any) -> tuple[Any, tuple[Any, Any]]:
-        """Inertia of the motor of joint j along it, its rate, and the inverse of its ratio."""
+    def _motor(self, at: Place, j: int, rate: Any) -> Motor:
+        """The motor of joint j; its rate where it turns with that joint alone."""
         inertia = self.parameters.add(at, "actuator", "rotor_inertia")
         ratio = self.parameters.add(at, "actuator", "gear_ratio")
         felt = self.eq("rotor_#", ratio**2 * inertia, j)
-        turning = self.eq("motor_#", ratio * rate, j)
-        return felt, (turning, self.eq("per_turn_#", 1 / ratio, j))
+        turning = None if self.coupled else self.eq("motor_#", ratio * rate, j)
+        return Motor(felt, ratio, self.eq("per_turn_#", 1 / ratio, j), turning)
 
 
 _ALL = (
@@ -210,4 +239,9 @@ _SPRINGS = (
 _ROTORS = (
     r"A rotor turns $`n_j`$ times the displacement of its joint; $`n_j^2`$ of its inertia is felt "
     r"there. Its gyroscopic effect, from the turning of the link that carries it, is left out. "
+)
+_COUPLED = (
+    r"A motor turns with several joints: $`n_j^2`$ of its rotor's inertia is felt by what it turns "
+    r"with, in the chapter on M. The gyroscopic effect, from the turning of the link that carries "
+    r"the rotor, is left out. "
 )

@@ -32,6 +32,8 @@ def to_full_form(manipulator: Manipulator) -> Plain:
         form["fixed_centre"] = list(m.fixed_centre)
     if m.moving_base:
         form["moving_base"] = True
+    if m.coupling is not None:
+        form["coupling"] = [list(row) for row in m.coupling]
     form["platform"] = _body(m.platform)
     if m.payload is not None:
         form["platform"] = _body(m.platform) | {"payload": _body(m.payload)}

@@ -215,6 +215,8 @@ class Manipulator:
             sorted by name.
         payload: a second body fixed in the platform, in the platform frame; None: absent.
         moving_base: the motion of the base is an input; gravity is in world axes.
+        coupling: by row, how a motor turns with the displacements of all actuated joints, before
+            its gear; None: each with its own.
     """
 
     name: str
@@ -228,3 +230,4 @@ class Manipulator:
     symbols: tuple[tuple[str, str], ...] = ()
     payload: Body | None = None
     moving_base: bool = False
+    coupling: tuple[tuple[float, ...], ...] | None = None

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from pne_sym.model.body import FIELDS as BODY_FIELDS
 from pne_sym.model.body import read_body
+from pne_sym.model.coupling import read_coupling
 from pne_sym.model.entry import Entry, Table
 from pne_sym.model.errors import SpecError, printable, show
 from pne_sym.model.files import parse, read_file
@@ -29,6 +30,7 @@ FIELDS = (
     "gravity",
     "fixed_centre",
     "moving_base",
+    "coupling",
     "platform",
     "leg_types",
     "legs",
@@ -102,6 +104,7 @@ def from_mapping(data: Mapping[str, object], source: str) -> Manipulator:
         fixed_centre=centre,
         symbols=read_symbols(table.get("symbols")),
         moving_base=_flag(table, "moving_base"),
+        coupling=read_coupling(table.get("coupling"), legs),
     )
 
 

@@ -74,6 +74,7 @@ def _specification() -> Schema:
         "gravity": _ref("vector"),
         "fixed_centre": _list_of(_ref("number"), 3),
         "moving_base": _FLAG,
+        "coupling": {"anyOf": [_some(_some(_ref("number"))), {"const": False}]},
         "platform": _ref("platform"),
         "leg_types": {
             "type": "object",
@@ -317,6 +318,10 @@ def _rows(size: int) -> Schema:
 
 def _list_of(item: Schema, least: int, most: int | None = None) -> Schema:
     return {"type": "array", "items": item, "minItems": least, "maxItems": most or least}
+
+
+def _some(item: Schema) -> Schema:
+    return {"type": "array", "items": item, "minItems": 1}
 
 
 def _ref(name: str) -> Schema:

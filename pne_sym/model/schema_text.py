@@ -12,6 +12,8 @@ MEANING: dict[str, dict[str, str]] = {
         "gravity": "Acceleration in the base frame, m/s^2. Default: 9.81 downwards, along -z, in "
         "the plane along -y.",
         "moving_base": "The base moves: functions take its motion, gravity is in world axes.",
+        "coupling": "A row of numbers for each motor: its angle, before the gear, per displacement "
+        "of every actuated joint, in the order of tau. The matrix has an inverse.",
         "fixed_centre": "Space spherical only: the point about which the platform turns, base "
         "frame, m.",
         "platform": "Mass, centre of mass and inertia of the platform, platform frame.",

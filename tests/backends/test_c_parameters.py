@@ -11,6 +11,7 @@ import pytest
 
 from pne_sym.derivation import Rule
 from pne_sym.model.body import read_body
+from pne_sym.model.coupling import read_coupling
 from pne_sym.model.effects import Actuator, Friction
 from pne_sym.model.entry import Entry
 from pne_sym.model.errors import SpecError, SpecWarning
@@ -32,12 +33,13 @@ PLACES: dict[Rule, tuple[str, str]] = {
     Rule.UNIT: ("tripod_3upu", "upu_platform_joint_axis_platform"),
     Rule.POSITIVE: (RUBBING, "rpr_joint1_velocity_scale"),
     Rule.NONZERO: (RUBBING, "rpr_joint2_gear_ratio"),
+    Rule.INVERTIBLE: (RUBBING, "coupling"),
 }
 """A parameter of every kind."""
 
 
 def manipulator_of(name: str) -> Manipulator:
-    """An entry of the catalogue; one of them has friction and motors besides."""
+    """An entry of the catalogue; one of them has friction and coupled motors besides."""
     if name != RUBBING:
         return models.catalogue(name)
     found = models.catalogue("planar_3rpr")
@@ -47,7 +49,8 @@ def manipulator_of(name: str) -> Manipulator:
         turn = replace(turn, friction=Friction(1.0, 2.0, 0.1))
         slide = replace(slide, actuator=Actuator(1e-4, 40.0))
         legs.append(replace(leg, joints=(turn, slide)))
-    return replace(found, name=RUBBING, legs=tuple(legs))
+    rows = ((1.0, 0.5, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    return replace(found, name=RUBBING, legs=tuple(legs), coupling=rows)
 
 
 def read(rule: Rule, value: Array) -> bool:
@@ -70,6 +73,8 @@ def read(rule: Rule, value: Array) -> bool:
                 read_friction(Entry("spec", "", {"coulomb": 1.0, "velocity_scale": entry.value}))
             case Rule.NONZERO:
                 read_actuator(Entry("spec", "", {"rotor_inertia": 0.0, "gear_ratio": entry.value}))
+            case Rule.INVERTIBLE:
+                read_coupling(entry, manipulator_of(RUBBING).legs)
     except SpecError:
         return False
     return True
@@ -146,6 +151,14 @@ CASES: dict[Rule, list[tuple[Any, bool]]] = {
         (1.0, True), (0.0, False), (-60.0, True), (1.1e-9, True), (-1.1e-9, True), (-0.9e-9, False),
         (1e-30, False), (-0.999e12, True), (1.001e12, False),
     ],
+    Rule.INVERTIBLE: [
+        (E, True), (FLIP[[1, 2, 0]], True), (Z, False), (np.ones((3, 3)), False),
+        (np.arange(9.0).reshape(3, 3), False), (1e-30 * E, True), (E * (1e-9, 1.0, 1e9), True),
+        (E * [[1e-9], [1.0], [1e9]], True), (changed(E, (1, 1), -1.0), False),
+        (changed(E, (0, 2), 0.999e12), False), (changed(E, (0, 2), 1.001e12), False),
+        (changed(np.ones((3, 3)), (0, 0), 1.0), False),
+        (E + np.ones((3, 3)), True), (1.0 - 2.0 * E, True),
+    ],
 }  # fmt: skip
 """Values of every kind, and whether they are good; far enough from the limits for floats."""
 NOT_NUMBERS = (np.nan, np.inf, -np.inf)
@@ -184,6 +197,11 @@ def near(rule: Rule, rng: np.random.Generator) -> Iterator[tuple[Array, bool]]:
         case Rule.POSITIVE | Rule.NONZERO:
             sign = rng.choice([-1.0, 1.0]) if rule is Rule.NONZERO else 1.0
             yield np.array(sign * 1e-9 * off), not good
+        case Rule.INVERTIBLE:
+            matrix = changed(E, (1, 2), 1.0) + changed(Z, (2, 1), 1.0)
+            order, sizes = rng.permutation(3), 10.0 ** rng.uniform(-9, 9, 3)
+            least = 1e-6 * off
+            yield changed(matrix, (2, 2), least / (1.0 - least))[order] * sizes, not good
 
 
 class Target:
@@ -262,6 +280,7 @@ def test_every_parameter_has_its_rule(name: str) -> None:
         "rotor_inertia": Rule.MASS,
         "velocity_scale": Rule.POSITIVE,
         "gear_ratio": Rule.NONZERO,
+        "coupling": Rule.INVERTIBLE,
     }
     for field in models.bundle(manipulator_of(name)).derivation.parameters.fields:
         last = field.paths[0].rsplit(".", maxsplit=1)[-1]

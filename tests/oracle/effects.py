@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from pne_sym.model.effects import Friction
-from pne_sym.model.manipulator import Joint, JointKind
+from pne_sym.model.manipulator import Joint, JointKind, Manipulator
 from tests.oracle.jets import Array
 
 
@@ -63,6 +63,17 @@ def rotors(joints: Iterable[Joint]) -> Array:
     found = [j.actuator.rotor_inertia * j.actuator.gear_ratio**2 if j.actuator else 0.0
              for j in joints]  # fmt: skip
     return np.array(found)
+
+
+def rotor_matrix(manipulator: Manipulator) -> Array:
+    """(NJ, NJ) inertia of the rotors by rates of all joints: motor m turns at n_m C_m . qd."""
+    joints = [joint for leg in manipulator.legs for joint in leg.joints]
+    if manipulator.coupling is None:
+        return np.diag(rotors(joints))
+    driven = [k for k, joint in enumerate(joints) if joint.actuated]
+    turns = np.zeros((len(driven), len(joints)))
+    turns[:, driven] = manipulator.coupling
+    return np.asarray(turns.T @ np.diag(rotors(joints[k] for k in driven)) @ turns)
 
 
 def margins(joints: Iterable[Joint], q: Array) -> Array:

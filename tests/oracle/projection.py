@@ -39,7 +39,7 @@ from tests.oracle.coordinates import (
     task_size,
     twist_basis,
 )
-from tests.oracle.effects import friction, rotors, springs, stored, turning_friction
+from tests.oracle.effects import friction, rotor_matrix, springs, stored, turning_friction
 from tests.oracle.forces import RANK_TOLERANCE, completion, forces
 from tests.oracle.jets import Array, Jet
 
@@ -144,11 +144,12 @@ class _Motion:
     """The whole mechanism at one acceleration; `remainders`: see `_joint_acceleration`.
 
     `dragged`: by leg, the moment (3,) of the platform joint's friction on the last link.
-    `in_space`: of the links, with the base.
+    `in_space`: of the links, with the base.  `rotors`: (nj,) forces that these take along joints.
     """
 
     qd: Array
     qdd: Array
+    rotors: Array
     links: list[LinkMotion]
     platform: LinkMotion
     forces: Array
@@ -207,7 +208,7 @@ def project(
     bodies = [leg.bodies.by(leg.rates) for leg in legs]
     return Result(
         M=np.sum([inertia_matrix(group) for group in [*bodies, platform]], axis=0)
-        + np.sum([_rotor_inertia(leg) for leg in legs], axis=0),
+        + _all_rates(legs).T @ rotor_matrix(manipulator) @ _all_rates(legs),
         Z=still.forces,
         H=H,
         Hk=Hk,
@@ -394,7 +395,9 @@ def _evaluate(
     bodies = [leg.bodies.by(leg.rates) for leg in legs]
     pairs = list(zip([*bodies, platform], [*links, carried], strict=True))
     in_space = [*carried_links, motion_of(fixed, [base.carries(pose)] * len(fixed))]
-    triples = list(zip(legs, qd, qdd, strict=True))
+    turned = rotor_matrix(manipulator)
+    taken = np.split(turned @ np.concatenate(qdd), np.cumsum([len(each) for each in qd])[:-1])
+    triples = list(zip(legs, qd, taken, strict=True))
     turning = [carried.angular_velocity[0] - motion.angular_velocity[-1] for motion in links]
     dragged = [
         turning_friction(leg.leg.platform_joint.friction, of)
@@ -403,6 +406,7 @@ def _evaluate(
     return _Motion(
         qd=np.concatenate(qd),
         qdd=np.concatenate(qdd),
+        rotors=np.concatenate(taken),
         links=links,
         platform=only_body(motion_of([manipulator.platform], [pose])),
         forces=np.sum(
@@ -422,7 +426,7 @@ def _evaluate(
         ),
         remainders=remainders,
         kinetic=sum(kinetic_energy(*pair) for pair in pairs)
-        + sum(0.5 * float(rotors(leg.leg.joints) @ rate**2) for leg, rate, _ in triples),
+        + 0.5 * float(np.concatenate(qd) @ turned @ np.concatenate(qd)),
         potential=sum(potential_energy(*pair, gravity) for pair in pairs)
         + sum(stored(leg.leg.joints, leg.q) for leg in legs),
         dissipation=sum(float(friction(leg.leg.joints, rate) @ rate) for leg, rate, _ in triples)
@@ -438,15 +442,15 @@ def _against(leg: _LegKinematics, moment: Array) -> Array:
     return np.asarray(-leg.bodies.angle_partials[-1].T @ moment)
 
 
-def _in_joints(leg: _LegKinematics, rate: Array, acceleration: Array) -> Array:
-    """(m,) forces along the joints that friction, springs and rotors take."""
+def _in_joints(leg: _LegKinematics, rate: Array, rotors: Array) -> Array:
+    """(m,) forces along the joints that friction and springs take, and rotors those given."""
     joints = leg.leg.joints
-    return friction(joints, rate) + springs(joints, leg.q) + rotors(joints) * acceleration
+    return friction(joints, rate) + springs(joints, leg.q) + rotors
 
 
-def _rotor_inertia(leg: _LegKinematics) -> Array:
-    """(nv, nv) inertia of the rotors in V."""
-    return np.asarray(leg.rates.T @ (rotors(leg.leg.joints)[:, None] * leg.rates))
+def _all_rates(legs: list[_LegKinematics]) -> Array:
+    """(nj, nv) rates of all joints by V."""
+    return np.vstack([leg.rates for leg in legs])
 
 
 def _joint_acceleration(
@@ -481,7 +485,7 @@ def _leg_results(
         own = slice(first, first + leg.multipliers.shape[1])
         first = own.stop
         forces = virtual_forces(leg.bodies, in_space, moving.gravity)
-        forces += _in_joints(leg, moving.qd[where], moving.qdd[where]) + _against(leg, moment)
+        forces += _in_joints(leg, moving.qd[where], moving.rotors[where]) + _against(leg, moment)
         # Virtual power of joint j: reaction . v_j = tau_j - Gamma_j.
         power = (drives[where] - forces)[leg.free]
         reaction = np.linalg.pinv(leg.jacobian[:, leg.free].T) @ power
@@ -491,7 +495,7 @@ def _leg_results(
                 jacobian=leg.jacobian,
                 rates=leg.rates,
                 joint_forces=forces,
-                joint_inertia=inertia_matrix(leg.bodies) + np.diag(rotors(leg.leg.joints)),
+                joint_inertia=inertia_matrix(leg.bodies) + rotor_matrix(manipulator)[where, where],
                 reaction=leg.wrench_map @ (reaction + leg.multipliers @ lam[own])
                 - np.concatenate((np.zeros(3), moment)),
                 constraint_wrenches=(leg.wrench_map @ leg.multipliers).T,

@@ -146,7 +146,7 @@ class Interpreter:
                 scope.fixed.setdefault(label, {})[name] = value
             else:
                 scope.base[name] = value
-        match = re.search(r"displacement of joint (\d+)", meaning)
+        match = re.match(r"(?:extra coordinate: )?displacement of joint (\d+)", meaning)
         if match and leg:
             self.displacements[leg, int(match[1])] = float(value)
 
@@ -166,7 +166,7 @@ class Interpreter:
             kept = _PART.fullmatch(what)
             if kept:
                 return [0.0 if p == "0" else found["xyz".index(p)] for p in kept[1].split(", ")]
-            return _symmetric(found) if name.endswith("_inertia") else found
+            return _symmetric(found) if found.shape == (3, 3) and "inertia" in name else found
         match = _PART.fullmatch(what)
         if match:
             return [float(p) for p in match[1].split(", ")]
@@ -236,7 +236,7 @@ class Interpreter:
             scope.fixed[axes][name] = found
         else:
             scope.base[name] = found
-        match = re.match(r"Displacement of joint (\d+)\b", printed.words)
+        match = re.match(r"Displacement of joint (\d+)(?! per)\b", printed.words)
         if match:
             self.displacements[leg, int(match[1])] = float(found)
         for owner in (scope, *([] if leg else self.legs.values())):
@@ -286,7 +286,22 @@ class Interpreter:
         printed = next(b for b in self.text.blocks if b.id == name)
         cells = _cells(printed.formula)
         parser = self._parser("")
-        return _Blocks(self, [[parser.read(c) for c in row] for row in cells], name).array()
+        found = _Blocks(self, [[parser.read(c) for c in row] for row in cells], name).array()
+        return found + self._of_rotors(printed.formula.partition(r"\end{bmatrix}")[2])
+
+    def _of_rotors(self, text: str) -> Any:
+        """What stands beside the blocks: of coupled motors, by S, r, C and accelerations."""
+        if r"\mathbf S" not in text or not text.startswith(" + "):
+            return 0.0
+        C, r = np.asarray(self.numbers["coupling"]), self.array("rotor_roots")
+        S = self.array("H") @ C.T @ np.diag(r)
+        if text == r" + \mathbf S\,\mathbf S^{\mathsf T}":
+            return S @ S.T
+        start = r" + \mathbf S\,\mathrm{diag}(\mathbf r)\,\mathbf C\,"
+        assert text.startswith(start), text
+        drives = f"{text.removeprefix(start)} ="
+        (name,) = (b.id for b in self.text.blocks if b.formula.startswith(drives))
+        return S @ np.diag(r) @ C @ self.array(name)
 
     def joint_displacements(self) -> Any:
         """q of all joints of all legs."""
@@ -320,6 +335,9 @@ def _cells(formula: str) -> list[list[str]]:
     return [[c.strip() for c in row if c.strip() not in (r"\cdots", "")] for row in rows]
 
 
+_OF_DRIVES = ("rotor_roots", "actuated_accelerations", "actuated_bias")
+
+
 class _Blocks:
     """An array of blocks; what has an index stands there once for each leg."""
 
@@ -331,6 +349,9 @@ class _Blocks:
         linear = [k for k, axis in enumerate(("vx", "vy", "vz")) if axis in rates]
         angular = [k for k, axis in enumerate(("wx", "wy", "wz")) if axis in rates]
         self.fixed = [parts for parts in (linear, angular) if parts]
+        self.vector = "tau" if name in _OF_DRIVES else "X"
+        if name in _OF_DRIVES:
+            self.fixed = []
 
     def _index(self, used: set[str]) -> str:
         """The letter of the legs in a cell."""
@@ -355,12 +376,12 @@ class _Blocks:
                 spans.append(_Span(at, at + len(self.fixed[k]), self.fixed[k]))
             else:
                 index = next(filter(None, (self._index(used) for _, used in line)))
-                spans.append(self._span(at, index, "X", spans))
+                spans.append(self._span(at, index, self.vector, spans))
             at = max(at, spans[-1].stop)
         return _joined(spans)
 
     def _columns(self, rows: list[_Span]) -> list[_Span]:
-        if self.name in ("Z", "required"):
+        if self.name in ("Z", "required", *_OF_DRIVES):
             return []
         if self.name == "M":
             return rows

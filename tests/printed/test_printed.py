@@ -15,6 +15,7 @@ from pne_sym.backends.report import ReportBackend
 from pne_sym.model.manipulator import Manipulator
 from tests import models
 from tests.printed.interpreter import Interpreter
+from tests.whole.test_coupling import both
 
 SAMPLE = ("planar_3rpr", "tripod_3rps")
 CASES = [
@@ -51,7 +52,16 @@ def least(found: Interpreter, wrench: Any) -> Any:
 @pytest.mark.parametrize(("name", "seed"), CASES)
 def test_report_computes(name: str, seed: int) -> None:
     """M, Z, H, Hk, q and tau, as the module has them."""
-    manipulator = manipulator_of(name, seed)
+    computes(manipulator_of(name, seed), seed)
+
+
+def test_coupled_motors() -> None:
+    """What is no sum over legs is printed beside the blocks."""
+    computes(both("planar_3rpr")[1], 1)
+
+
+def computes(manipulator: Manipulator, seed: int) -> None:
+    """All of these, from the report's text."""
     bundle, module = models.bundle(manipulator), models.module(manipulator)
     state = models.state_at(manipulator, seed)
     text = ReportBackend().emit(bundle)[f"{bundle.name}.md"]

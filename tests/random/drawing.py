@@ -41,7 +41,7 @@ from tests.oracle.jets import Array, constant
 from tests.oracle.projection import project
 from tests.oracle.randomisation import matrix3, random_inertia, vector3
 from tests.random.central import guided, with_ends_at_origins
-from tests.random.effects import with_effects
+from tests.random.effects import with_coupling, with_effects
 
 LEG_QUALITY = 0.06
 """Least reciprocal condition number of a leg's freedoms."""
@@ -126,6 +126,8 @@ class _LegPlan:
 
 MOVING = 0.2
 """Of so many mechanisms the base moves."""
+COUPLED = 0.3
+"""Of so many the motors are coupled."""
 
 
 def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulator:
@@ -139,8 +141,9 @@ def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulato
     """
     found = _structured(seed, light=light, anywhere=anywhere)
     moves = bool(np.random.default_rng([seed, 5]).random() < MOVING)
-    found = replace(found, moving_base=moves)
-    return with_effects(found, np.random.default_rng([seed, 4]))
+    found = with_effects(replace(found, moving_base=moves), np.random.default_rng([seed, 4]))
+    rng = np.random.default_rng([seed, 6])
+    return with_coupling(found, rng) if rng.random() < COUPLED else found
 
 
 def _structured(seed: int, *, light: bool, anywhere: bool) -> Manipulator:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pne_sym.model.coupling import is_invertible
 from pne_sym.model.effects import Actuator, Friction, Limits, Spring
 from pne_sym.model.manipulator import Body, Joint, Leg, Manipulator, PlatformJoint, Space
 from tests.oracle.coordinates import is_planar
@@ -43,6 +44,14 @@ def with_effects(
             )
         )
     return replace(manipulator, legs=tuple(legs))
+
+
+def with_coupling(manipulator: Manipulator, rng: np.random.Generator) -> Manipulator:
+    """The mechanism with motors that turn with several joints each, whatever their gears."""
+    count = sum(joint.actuated for leg in manipulator.legs for joint in leg.joints)
+    matrix = np.diag(rng.choice([-1.0, 1.0], count)) + rng.uniform(-0.3, 0.3, (count, count))
+    rows = tuple(tuple(float(v) for v in row) for row in matrix[rng.permutation(count)])
+    return replace(manipulator, coupling=rows if is_invertible(rows) else None)
 
 
 def _rubbing(leg: Leg, first: Joint, space: Space) -> PlatformJoint:

@@ -16,6 +16,7 @@ from pne_sym.model.manipulator import Manipulator
 from tests import models
 from tests.infinite import finite_parts
 from tests.targets.modules import call, condition, functions, vectors, xp_module
+from tests.whole.test_coupling import coupled
 from tests.whole.test_joint_forces import dressed
 from tests.whole.test_moving_base import carried
 
@@ -31,9 +32,10 @@ def test_equal_to_the_numpy_module(space: Any, name: str) -> None:
 
 
 def test_with_all_that_a_joint_can_have() -> None:
-    """Friction, springs, motors, limits; a payload; a base that moves."""
+    """Friction, springs, motors, limits; a payload; a base that moves; coupled motors."""
     assert_alike(np, dressed("planar_3rpr"))
     assert_alike(np, carried("tripod_3rps"))
+    assert_alike(np, coupled("planar_3rpr"))
 
 
 def assert_alike(space: Any, manipulator: Manipulator) -> None:

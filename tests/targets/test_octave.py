@@ -9,6 +9,7 @@ import pytest
 from pne_sym import manipulators
 from tests import models
 from tests.octave.conformance import conforms, end_to_end
+from tests.whole.test_coupling import coupled
 from tests.whole.test_moving_base import carried
 
 
@@ -24,6 +25,10 @@ def test_closures_with_more_and_with_as_many_conditions_as_unknowns(file: str) -
 
 def test_on_a_base_that_moves() -> None:
     conforms(carried("planar_3rpr"))
+
+
+def test_with_coupled_motors() -> None:
+    conforms(coupled("planar_3rpr"))
 
 
 def test_from_the_command_line_to_octave(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.report import functions, legs, mechanism, words
 from pne_sym.backends.report.collected import collect
+from pne_sym.backends.report.coupling import is_coupled
 from pne_sym.backends.report.equations import ChapterWriter, index_rows
 from pne_sym.backends.report.given import GivenWriter
 from pne_sym.backends.report.markdown import escape, inline, table
@@ -12,6 +13,7 @@ from pne_sym.backends.report.names import printer_for
 from pne_sym.backends.report.overview import overview
 from pne_sym.backends.report.view import ReportView
 from pne_sym.backends.templating import render
+from pne_sym.derivation import Law
 
 
 class ReportBackend:
@@ -31,6 +33,7 @@ class ReportBackend:
         collected = collect(derivation)
         chapters = ChapterWriter(bundle, collected).chapters()
         used_laws = {e.law for e in derivation.equations()}
+        used_laws |= {Law.COUPLING} if is_coupled(derivation) else set()
         return ReportView(
             name=bundle.name,
             title=escape(bundle.manipulator.title),

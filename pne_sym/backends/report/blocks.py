@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.latex import LatexPrinter
+from pne_sym.backends.report.coupling import coupling_statements, of_rotors
 from pne_sym.backends.report.markdown import inline
 from pne_sym.backends.report.names import leg_indices, leg_title
 from pne_sym.backends.report.view import Statement
@@ -70,8 +71,10 @@ def block_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[Statemen
         outputs = [o for o in derivation.outputs if o.array == array]
         if outputs:
             note = _index_note(derivation, outputs)
-            formula = block_matrix(outputs, latex, printer)
+            beside = of_rotors(derivation, array)
+            formula = (*block_matrix(outputs, latex, printer), *beside)
             yield Statement(f"**`{array}`.** {words}.{note}", formula)
+    yield from coupling_statements(derivation, lambda o, latex: block_matrix(o, latex, printer))
     if bundle.coordinates.extras:
         yield _partition(bundle)
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.latex import LatexPrinter
 from pne_sym.backends.report.blocks import block_matrix
+from pne_sym.backends.report.coupling import of_rotors
 from pne_sym.backends.report.equations import last_duals
 from pne_sym.backends.report.markdown import table
 from pne_sym.backends.report.names import leg_title
@@ -26,6 +27,7 @@ def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[State
     """Inverse and forward dynamics, constraints, extra coordinates."""
     outputs = [o for o in bundle.derivation.outputs if o.array == "required"]
     required = block_matrix(outputs, _R, printer)
+    beside = of_rotors(bundle.derivation, "required")
     sizes = bundle.coordinates.sizes
     constrained = sizes["NC"] > 0
     unknown = (
@@ -38,7 +40,7 @@ def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[State
         "**Inverse dynamics** goes the direct way of Eq. 3: accelerations are numbers, leg forces "
         r"come out as numbers, and the platform's equilibrium gives what is required, "
         r"$`\mathbf R`$; M is never formed.",
-        (f"{unknown} = {_R} - {_W},", r"\qquad", *required),
+        (f"{unknown} = {_R} - {_W},", r"\qquad", *required, *beside),
     )
     actuation = bundle.coordinates.actuation
     if actuation.is_determined and sizes["NU"] + sizes["NC"] > actuation.rank:

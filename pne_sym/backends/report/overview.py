@@ -9,6 +9,7 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.latex import LatexPrinter
 from pne_sym.backends.report.blocks import ARRAYS, block_matrix, defines_blocks
 from pne_sym.backends.report.collected import Collected
+from pne_sym.backends.report.coupling import of_rotors
 from pne_sym.backends.report.legforce import closed_force
 from pne_sym.backends.report.markdown import inline
 from pne_sym.backends.report.names import leg_indices, leg_title
@@ -33,7 +34,10 @@ def overview(bundle: Bundle, collected: Collected, printer: LatexPrinter) -> Ite
             )
             yield Statement(_meaning(derivation, info, printer), ())
     blocks = {
-        array: block_matrix([o for o in derivation.outputs if o.array == array], latex, printer)
+        array: (
+            *block_matrix([o for o in derivation.outputs if o.array == array], latex, printer),
+            *of_rotors(derivation, array),
+        )
         for array, latex, _ in ARRAYS
         if array in _SHOWN and any(o.array == array for o in derivation.outputs)
     }

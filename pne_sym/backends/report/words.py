@@ -26,6 +26,8 @@ LAWS: dict[Law, str] = {
     "smooth near rest. It takes power from every joint that has it.",
     Law.SPRING: "Hooke: the force is proportional to the displacement from that at rest.",
     Law.ROTOR: "A rotor geared to its joint: its inertia counts with the square of the ratio.",
+    Law.COUPLING: "Gears and couplings take no power: forces are transformed by the transpose of "
+    "the matrix that transforms rates.",
     Law.MOVING_FRAME: "Relative to a base that turns, bodies have Coriolis's, Euler's and "
     "centrifugal acceleration besides.",
     Law.LIMIT: "How far a joint may go; nothing acts on it there.",

@@ -1,0 +1,93 @@
+"""Motors of the actuated joints: rates and ratios, and how they are coupled to several joints.
+
+Coupled motors turn with C times the displacements q of the actuated joints, before their gears, so
+that tau = C^T (n motor torque) by power.  Their rotors are felt by the platform through the
+columns of H C^T: H C^T J C H^T is added to M, with J the inertias n^2 I.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from pne_sym.derivation import Book, Output, ParameterField, Quantity, Rule
+from pne_sym.mechanics.joint_forces import Motor
+from pne_sym.mechanics.platform_dynamics import Leg
+from pne_sym.model.manipulator import Manipulator
+from pne_sym.vector import linear_form
+
+_DIRECT = Motor()
+
+
+def write_motors(book: Book, manipulator: Manipulator, legs: list[Leg]) -> None:
+    """What functions need of motors, where there are motors or couplings.
+
+    An actuated joint without data of its motor is driven directly.
+    """
+    has_motors = any(leg.dynamics.forces.motors for leg in legs)
+    coupling = manipulator.coupling
+    if coupling is not None:
+        _matrix(book, np.array(coupling))
+    if not has_motors and coupling is None:
+        return
+    order = [
+        (i, j)
+        for i, leg in enumerate(manipulator.legs)
+        for j, joint in enumerate(leg.joints, 1)
+        if joint.actuated
+    ]
+    for leg in legs:
+        for j, joint in enumerate(leg.g.leg_type.model.joints, 1):
+            if joint.actuated:
+                rows = tuple(order.index((i, j)) for i in leg.g.leg_type.indices)
+                arrays = _coupled(leg, j) if coupling is not None else _alone(leg, j)
+                if not has_motors:
+                    arrays = {
+                        name: arrays[name] for name in ("actuated_rates", "ratios", "per_turn")
+                    }
+                book.outputs += [
+                    Output(array, value, ((0, 0),), (), leg.name, rows)
+                    for array, value in arrays.items()
+                    if value != 0
+                ]
+
+
+def _alone(leg: Leg, j: int) -> dict[str, Any]:
+    """Of the motor of joint j alone."""
+    motor = leg.dynamics.forces.motors.get(j, _DIRECT)
+    rate = leg.motion.qd[j] if motor.rate is None else motor.rate
+    return {"motor_rates": rate, "per_turn": motor.per_turn}
+
+
+def _coupled(leg: Leg, j: int) -> dict[str, Any]:
+    """Of actuated joint j, with which several motors turn, and of the motor in its place.
+
+    A rotor's inertia is given by its root: with it M comes out symmetric.
+    """
+    motor, motion = leg.dynamics.forces.motors.get(j, _DIRECT), leg.motion
+    form = linear_form(motion.qdd[j], motion.collection.unknowns, motion.known)
+    return {
+        "actuated_rates": motion.qd[j],
+        "actuated_accelerations": motion.qdd[j],
+        "actuated_bias": form.remainder,
+        "rotor_roots": sp.sqrt(motor.felt),
+        "ratios": motor.ratio,
+        "per_turn": motor.per_turn,
+    }
+
+
+def _matrix(book: Book, coupling: Any) -> None:
+    """The matrix as a live parameter."""
+    count = len(coupling)
+    meaning = "angle of each motor, before its gear, per displacement of every actuated joint"
+    field = ParameterField(
+        "coupling", None, coupling.shape, "-", meaning, ("coupling",), coupling,
+        rule=Rule.INVERTIBLE,
+    )  # fmt: skip
+    for k, symbol in enumerate(book.parameters.add(field)):
+        row, column = divmod(k, count)
+        latex = f"C_{{{row + 1},{column + 1}}}"
+        book.note_quantity(Quantity(symbol.name, latex, meaning, parameter=True))
+        book.outputs.append(Output("coupling", symbol, ((0, row),), ((0, column),)))
