@@ -1,7 +1,7 @@
-"""Functions of a program in NumPy: straight-line code for a state in floats, or for many in arrays.
+"""Functions of a program in NumPy: straight-line code, with the legs of a type in a loop.
 
-The code runs in a mode m: `Floats` go over the legs one after another, `Arrays` have them as the
-first dimension of what belongs to a leg, and go over them once.
+It runs in a mode m: `Floats` compute a state after another; for many states it runs once on values
+that record what is done, and the record is replayed on arrays.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class FunctionText:
         name, counts = self.f.name, count_function(self.f, self.bundle.leg_counts)
         body = self._inputs() + self.outside.statements(self.f.unpack)
         body += [f"{flag} = True" for flag in self._flags()]
-        body += self._required(self.f.unpack_checks, "{}")
+        body += self._required(self.f.unpack_checks)
         body += [f'out_{array} = m.zeros("{array}")' for array in self.f.arrays]
         loops = [block for block in self.f.blocks if block.leg_type]
         for block in self.f.blocks:
@@ -111,7 +111,7 @@ class FunctionText:
         return lines
 
     def _once(self, block: Block) -> list[str]:
-        lines = self.outside.statements(block.assignments) + self._required(block.checks, "{}")
+        lines = self.outside.statements(block.assignments) + self._required(block.checks)
         rows = []
         for store in block.stores:
             (place,) = flat_places(store, self._columns(store.array))
@@ -126,22 +126,21 @@ class FunctionText:
         lines = text.names(constants, "k")
         for entry in self.f.leg_inputs.get(leg, ()):
             lines.append(f"{entry.symbol} = {entry.vector}[{list(entry.indices)}[leg]]")
-        lines += text.statements(block.assignments)
-        lines += self._required(block.checks, "m.every(leg, {})")
-        if block.sums:
-            values = [self._of(value) for _, value in block.sums]
-            lines.append("sums = m.added(sums, leg, (")
-            lines += [*wrap("    " + self._tuple(values)[1:-1], WIDTH - 12, "    "), "))"]
+        lines += text.statements(block.assignments) + self._required(block.checks)
         rows = []
+        for (target, value), equation in zip(block.sums, block.sum_equations, strict=True):
+            rows.append((equation, text.assign(str(target), self._of(value), "+=")))
         for store in block.stores:
             table = flat_places(store, self._columns(store.array), self.bundle.leg_counts[leg])
             target = f"out_{store.array}[{self.places.named(store.array, leg, table)}[leg]]"
             rows.append((store.equation, text.assign(target, self._of(store.value))))
         lines += text.headed(rows)
-        head = [f"sums = [0.0] * {len(block.sums)}"] if block.sums else []
-        head.append(f"for leg, k in legs[{number}]:")
-        targets = self.outside.names([str(target) for target, _ in block.sums], "sums")
-        return [*head, *textwrap.indent("\n".join(lines), "    ").split("\n"), *targets]
+        sums = [str(target) for target, _ in block.sums]
+        return [
+            *self.outside.names(sums, f"[0.0] * {len(sums)}"),
+            f"for leg, k in legs[{number}]:",
+            *textwrap.indent("\n".join(lines), "    ").split("\n"),
+        ]
 
     # ---- guards ------------------------------------------------------------------------------
 
@@ -151,7 +150,7 @@ class FunctionText:
     def _verdict(self) -> str:
         return f"({', '.join(self._flags())})" if self.judged else "ok"
 
-    def _required(self, checks: Iterable[Check], form: str) -> list[str]:
+    def _required(self, checks: Iterable[Check]) -> list[str]:
         """What guards demand."""
         demands: dict[str, list[str]] = {}
         for check in checks:
@@ -159,8 +158,7 @@ class FunctionText:
             demands.setdefault(flag, []).append(self._demand(check))
         lines = []
         for flag, parts in demands.items():
-            value = form.format(" & ".join(dict.fromkeys(parts)))
-            lines += self.inside.assign(flag, f"{flag} & {value}")
+            lines += self.inside.assign(flag, f"{flag} & {' & '.join(dict.fromkeys(parts))}")
         return lines
 
     def _demand(self, check: Check) -> str:

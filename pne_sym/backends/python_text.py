@@ -21,12 +21,12 @@ class PythonText(StraightText):
         super().__init__(bundle, printer or _PRINTER)
         self.width = WIDTH - indent
 
-    def assign(self, target: str, value: str) -> list[str]:
+    def assign(self, target: str, value: str, sign: str = "=") -> list[str]:
         """An assignment, on several lines if it is long."""
-        line = f"{target} = {value}"
+        line = f"{target} {sign} {value}"
         if len(line) <= self.width:
             return [line]
-        return [f"{target} = (", *wrap(f"    {value}", self.width, "    "), ")"]
+        return [f"{target} {sign} (", *wrap(f"    {value}", self.width, "    "), ")"]
 
     def names(self, names: list[str], source: str) -> list[str]:
         """Unpack a tuple; nothing for an empty one."""

@@ -84,13 +84,6 @@ class Mode:
             [(leg, self._numbers(size)) for leg in range(count)] for count, size in self.loops
         ]
 
-    def added(self, sums: list[Any], leg: int, terms: tuple[Any, ...]) -> list[Number]:
-        """Sums over the legs so far."""
-        assert leg >= 0
-        assert len(sums) == len(terms)
-        self.tally.add += len(terms)
-        return self._numbers(len(terms))
-
     def _numbers(self, size: int) -> list[Number]:
         return [Number(self.tally)] * size
 
