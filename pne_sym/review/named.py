@@ -82,12 +82,13 @@ def statements(structure: Structure, program: Program, at: Situation) -> Iterato
     table = structure.derivation.parameters
     prepared = prepare(program, table.values(at.parameters))
     state = State(structure, at.parameters, at.vectors)
-    yield from _Values(structure, state, "prepare", program.means, prepared).of(program.prepare)
+    said = _Said(state)
+    yield from _Values(said, "prepare", program.means, prepared).of(program.prepare)
     vectors = {name: np.asarray(v, dtype=float)[None] for name, v in at.vectors.items()}
     outputs = by_array(structure.derivation)
     for name, function in program.functions.items():
         found = evaluate(program, name, prepared, vectors)
-        values = _Values(structure, state, name, function.means, found.values)
+        values = _Values(said, name, function.means, found.values)
         yield from values.of(function.blocks)
         for array in function.arrays:
             if array in outputs and found.status[0] == Status.OK:
@@ -95,52 +96,22 @@ def statements(structure: Structure, program: Program, at: Situation) -> Iterato
                 yield from values.stored(function.blocks, array, entries, found.outputs[array][0])
 
 
-class _Values:
-    """The values of a function at a state, beside what the equations say."""
+class _Said:
+    """What the equations say at a state, computed once for all functions."""
 
-    def __init__(
-        self,
-        structure: Structure,
-        state: State,
-        function: str,
-        means: Means,
-        values: Mapping[str, Array],
-    ) -> None:
-        self.structure, self.state = structure, state
-        self.ids = {e.name: e.id for e in structure.derivation.equations()}
-        self.function, self.means, self.values = function, means, values
+    def __init__(self, state: State) -> None:
+        self.state, self.structure = state, state.structure
+        self.ids = {e.name: e.id for e in self.structure.derivation.equations()}
+        self._known: dict[tuple[str, str, str, str, int | None], Array] = {}
 
-    def of(self, blocks: Iterable[Block]) -> Iterator[Statement]:
-        """Assignments and sums."""
-        for block in blocks:
-            legs = self.structure.legs[block.leg_type] if block.leg_type else (None,)
-            for a in block.assignments:
-                yield from self._named(str(a.target), a.equation, legs)
-            totals = zip(block.sums, block.sum_equations, strict=True)
-            for (target, _), equation in totals:
-                yield from self._named(str(target), equation, (None,))
+    def whole(self, of: Component, leg: int | None) -> Array:
+        """The quantity of a component in its frame."""
+        key = (of.quantity, of.over, of.frame, of.axes, leg)
+        if key not in self._known:
+            self._known[key] = self._in_frame(of, leg)
+        return self._known[key]
 
-    def _named(self, name: str, equation: str, legs: Iterable[int | None]) -> Iterator[Statement]:
-        for component in self.means.get(name, ()):
-            # of what else a value is it is that equation which the value would contradict
-            of = self.ids.get(component.quantity, equation)
-            for k, leg in enumerate(legs):
-                whole = self._expected(component, leg)
-                value = np.atleast_1d(self.values[name])
-                found = value.reshape(value.shape[0], -1)[min(k, len(value) - 1), 0]
-                yield Statement(
-                    self.function,
-                    of,
-                    name,
-                    component.name,
-                    leg,
-                    float(found),
-                    float(whole[component.index]),
-                    float(np.abs(whole).max()),
-                )
-
-    def _expected(self, component: Component, leg: int | None) -> Array:
-        """The whole quantity in its frame."""
+    def _in_frame(self, component: Component, leg: int | None) -> Array:
         state = self.state
         turned = state.rotation(component.frame, leg) if component.frame else None
         if component.axes:
@@ -157,6 +128,45 @@ class _Values:
         equation = self.structure.equations[component.quantity]
         (total,) = (s for s in leg_sums(equation.rhs) if str(s.args[1]) == component.over)
         return self.state.of(total, None)
+
+
+class _Values:
+    """The values of a function at a state, beside what the equations say."""
+
+    def __init__(
+        self, said: _Said, function: str, means: Means, values: Mapping[str, Array]
+    ) -> None:
+        self.said, self.structure = said, said.structure
+        self.function, self.means, self.values = function, means, values
+
+    def of(self, blocks: Iterable[Block]) -> Iterator[Statement]:
+        """Assignments and sums."""
+        for block in blocks:
+            legs = self.structure.legs[block.leg_type] if block.leg_type else (None,)
+            for a in block.assignments:
+                yield from self._named(str(a.target), a.equation, legs)
+            totals = zip(block.sums, block.sum_equations, strict=True)
+            for (target, _), equation in totals:
+                yield from self._named(str(target), equation, (None,))
+
+    def _named(self, name: str, equation: str, legs: Iterable[int | None]) -> Iterator[Statement]:
+        for component in self.means.get(name, ()):
+            # of what else a value is it is that equation which the value would contradict
+            of = self.said.ids.get(component.quantity, equation)
+            for k, leg in enumerate(legs):
+                whole = self.said.whole(component, leg)
+                value = np.atleast_1d(self.values[name])
+                found = value.reshape(value.shape[0], -1)[min(k, len(value) - 1), 0]
+                yield Statement(
+                    self.function,
+                    of,
+                    name,
+                    component.name,
+                    leg,
+                    float(found),
+                    float(whole[component.index]),
+                    float(np.abs(whole).max()),
+                )
 
     def stored(
         self,

@@ -10,6 +10,9 @@ from pne_sym.review.equations import Sample
 from pne_sym.review.model import Model
 from pne_sym.review.named import Situation, Statement, first_contradiction
 
+_SITUATIONS = 2
+"""At random, a statement that is wrong is so at each of them; the second is for what is zero."""
+
 
 def contradictions(
     models: tuple[Model, Model], samples: Sequence[Sample]
@@ -22,7 +25,7 @@ def _first(models: tuple[Model, Model], samples: Sequence[Sample]) -> Iterator[C
     for k, model in enumerate(models):
         if model.bundle is None:
             continue
-        at = [Situation((s.before, s.after)[k], s.vectors[k]) for s in samples]
+        at = [Situation((s.before, s.after)[k], s.vectors[k]) for s in samples[:_SITUATIONS]]
         s = first_contradiction(model.bundle.derivation, model.bundle.program, at)
         if s is not None:
             line = line_of(model, s)
