@@ -78,7 +78,9 @@ PREPARE = Part("prepare", "state")
 
 def parts(model: Interface, analysis: str) -> list[Part]:
     """All that an analysis looks at."""
-    names = [f.name for f in model.functions if analysis == "safety" or f.name not in NOT_IN_NUMBERS]
+    names = [
+        f.name for f in model.functions if analysis == "safety" or f.name not in NOT_IN_NUMBERS
+    ]
     return [PREPARE, *(Part(name, form) for name in names for form in ("state", "batch"))]
 
 
