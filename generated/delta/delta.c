@@ -54,6 +54,18 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+#define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
+
+/* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
+#define NQ ((size_t)DELTA_NQ)
+#define NV ((size_t)DELTA_NV)
+#define NU ((size_t)DELTA_NU)
+#define NC ((size_t)DELTA_NC)
+#define NW ((size_t)DELTA_NW)
+#define NJ ((size_t)DELTA_NJ)
+#define NL ((size_t)3)
+#define LEGS_OF_rus ((size_t)3)
+
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
@@ -114,6 +126,12 @@ INLINE void clear(real *x, size_t n)
     for (size_t i = 0; i < n; ++i) {
         x[i] = 0;
     }
+}
+
+/* What a leg adds to a sum, or gives alone. */
+INLINE void gather(real *sum, int add, real term)
+{
+    *sum = add ? *sum + term : term;
 }
 
 INLINE int is_finite(real x)
@@ -446,26 +464,26 @@ static int acceptable(const delta_params *p)
     ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->rus_base_point[0][0], 9);
-    ok &= all_within(&p->rus_base_frame[0][0][0], 27);
-    ok &= all_rotations(&p->rus_base_frame[0][0][0], 3);
-    ok &= all_within(&p->rus_platform_point[0][0], 9);
-    ok &= all_within(&p->rus_joint2_offset[0][0], 9);
-    ok &= all_zero(&p->rus_joint2_offset[0][0] + 1, 3, 3);
-    ok &= all_zero(&p->rus_joint2_offset[0][0] + 2, 3, 3);
-    ok &= all_within(&p->rus_platform_joint_offset[0][0], 9);
-    ok &= all_zero(&p->rus_platform_joint_offset[0][0] + 1, 3, 3);
-    ok &= all_zero(&p->rus_platform_joint_offset[0][0] + 2, 3, 3);
-    ok &= all_within(&p->rus_link1_mass[0], 3);
-    ok &= none_negative(&p->rus_link1_mass[0], 3);
-    ok &= all_within(&p->rus_link1_centre_of_mass[0][0], 9);
-    ok &= all_within(&p->rus_link1_inertia[0][0][0], 27);
-    ok &= all_inertias(&p->rus_link1_inertia[0][0][0], 3);
-    ok &= all_within(&p->rus_link3_mass[0], 3);
-    ok &= none_negative(&p->rus_link3_mass[0], 3);
-    ok &= all_within(&p->rus_link3_centre_of_mass[0][0], 9);
-    ok &= all_within(&p->rus_link3_inertia[0][0][0], 27);
-    ok &= all_inertias(&p->rus_link3_inertia[0][0][0], 3);
+    ok &= all_within(&p->rus_base_point[0][0], 3*LEGS_OF_rus);
+    ok &= all_within(&p->rus_base_frame[0][0][0], 9*LEGS_OF_rus);
+    ok &= all_rotations(&p->rus_base_frame[0][0][0], LEGS_OF_rus);
+    ok &= all_within(&p->rus_platform_point[0][0], 3*LEGS_OF_rus);
+    ok &= all_within(&p->rus_joint2_offset[0][0], 3*LEGS_OF_rus);
+    ok &= all_zero(&p->rus_joint2_offset[0][0] + 1, LEGS_OF_rus, 3);
+    ok &= all_zero(&p->rus_joint2_offset[0][0] + 2, LEGS_OF_rus, 3);
+    ok &= all_within(&p->rus_platform_joint_offset[0][0], 3*LEGS_OF_rus);
+    ok &= all_zero(&p->rus_platform_joint_offset[0][0] + 1, LEGS_OF_rus, 3);
+    ok &= all_zero(&p->rus_platform_joint_offset[0][0] + 2, LEGS_OF_rus, 3);
+    ok &= all_within(&p->rus_link1_mass[0], LEGS_OF_rus);
+    ok &= none_negative(&p->rus_link1_mass[0], LEGS_OF_rus);
+    ok &= all_within(&p->rus_link1_centre_of_mass[0][0], 3*LEGS_OF_rus);
+    ok &= all_within(&p->rus_link1_inertia[0][0][0], 9*LEGS_OF_rus);
+    ok &= all_inertias(&p->rus_link1_inertia[0][0][0], LEGS_OF_rus);
+    ok &= all_within(&p->rus_link3_mass[0], LEGS_OF_rus);
+    ok &= none_negative(&p->rus_link3_mass[0], LEGS_OF_rus);
+    ok &= all_within(&p->rus_link3_centre_of_mass[0][0], 3*LEGS_OF_rus);
+    ok &= all_within(&p->rus_link3_inertia[0][0][0], 9*LEGS_OF_rus);
+    ok &= all_inertias(&p->rus_link3_inertia[0][0][0], LEGS_OF_rus);
     return ok;
 }
 
@@ -475,10 +493,10 @@ int delta_prepare(const delta_params *params, delta_model *model)
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real m_star_rus = 0;
-    real h_star_rus_in_platform_x = 0;
-    real h_star_rus_in_platform_y = 0;
-    real h_star_rus_in_platform_z = 0;
+    real m_star_of_legs = 0;
+    real h_star_x_of_legs = 0;
+    real h_star_y_of_legs = 0;
+    real h_star_z_of_legs = 0;
     real b_c_rus_in_platform_x = 0;
     real b_c_rus_in_platform_y = 0;
     real b_c_rus_in_platform_z = 0;
@@ -500,8 +518,8 @@ int delta_prepare(const delta_params *params, delta_model *model)
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 4; ++leg) {
-        const size_t own = leg < 3 ? leg : 0;
+    for (size_t leg = 0; leg < FILLED(LEGS_OF_rus); ++leg) {
+        const size_t own = leg < LEGS_OF_rus ? leg : 0;
         const real rus_base_point_x = params->rus_base_point[own][0];
         const real rus_base_point_y = params->rus_base_point[own][1];
         const real rus_base_point_z = params->rus_base_point[own][2];
@@ -605,7 +623,7 @@ int delta_prepare(const delta_params *params, delta_model *model)
         const real rus_mu_1_t_2 = gravity_x*rus_base_frame_xy + gravity_y*rus_base_frame_yy +
             gravity_z*rus_base_frame_zy;
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real inv_rus_rho2_1_t = 1/rus_rho2_1_t;
         const real inv_rus_size_t_3 = 1/rus_size_t_3;
         const real inv_rus_size = 1/rus_size;
@@ -683,21 +701,21 @@ int delta_prepare(const delta_params *params, delta_model *model)
         model->rus_size[leg] = rus_size;
         model->rus_size_t_3[leg] = rus_size_t_3;
         model->rus_w_3_in_axes3_y[leg] = rus_w_3_in_axes3_y;
-        m_star_rus += leg < 3 ? rus_link3_mass : 0;
-        h_star_rus_in_platform_x += leg < 3 ? rus_h_star_t : 0;
-        h_star_rus_in_platform_y += leg < 3 ? rus_h_star_t_2 : 0;
-        h_star_rus_in_platform_z += leg < 3 ? rus_h_star_t_3 : 0;
-        b_c_rus_in_platform_x += leg < 3 ? rus_platform_point_x : 0;
-        b_c_rus_in_platform_y += leg < 3 ? rus_platform_point_y : 0;
-        b_c_rus_in_platform_z += leg < 3 ? rus_platform_point_z : 0;
-        legs_size_rus += leg < 3 ? rus_size_t_3 : 0;
+        m_star_of_legs += leg < LEGS_OF_rus ? rus_link3_mass : 0;
+        h_star_x_of_legs += leg < LEGS_OF_rus ? rus_h_star_t : 0;
+        h_star_y_of_legs += leg < LEGS_OF_rus ? rus_h_star_t_2 : 0;
+        h_star_z_of_legs += leg < LEGS_OF_rus ? rus_h_star_t_3 : 0;
+        b_c_rus_in_platform_x += leg < LEGS_OF_rus ? rus_platform_point_x : 0;
+        b_c_rus_in_platform_y += leg < LEGS_OF_rus ? rus_platform_point_y : 0;
+        b_c_rus_in_platform_z += leg < LEGS_OF_rus ? rus_platform_point_z : 0;
+        legs_size_rus += leg < LEGS_OF_rus ? rus_size_t_3 : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_rus + platform_mass;
+    const real m_star = m_star_of_legs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_rus_in_platform_x + h_star_t;
-    const real h_star_y = h_star_rus_in_platform_y + h_star_t_2;
-    const real h_star_z = h_star_rus_in_platform_z + h_star_t_3;
+    const real h_star_x = h_star_t + h_star_x_of_legs;
+    const real h_star_y = h_star_t_2 + h_star_y_of_legs;
+    const real h_star_z = h_star_t_3 + h_star_z_of_legs;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_x = -gravity_x*m_star;
     const real Z_p_y = -gravity_y*m_star;
@@ -790,9 +808,10 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
 }
 
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
+#define PADDED(n) (((n) + 4)/4*4)
 INLINE size_t stride_of(size_t n, size_t w)
 {
-    return w == 1 ? (n + 4)/4*4 : n + 1;
+    return w == 1 ? PADDED(n) : n + 1;
 }
 
 INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
@@ -1102,14 +1121,14 @@ INLINE void wrap_turns(size_t rows, size_t n, const size_t *places, real *x)
 /* X moved by a part of a small step. */
 static void moved(const real *X, const real *step, real part, real *to)
 {
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         to[i] = X[i] + part*step[i];
     }
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 858 mul, 570 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics ---- */
 INLINE void dynamics_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -1402,7 +1421,7 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
             inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz - rus_d_Gamma_2_t_4 -
             rus_d_Gamma_2_t_5);
         /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z;
         const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
@@ -1475,16 +1494,16 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
             axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + rus_Q_xx : rus_Q_xx;  /* M_tt_rus_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_Q_xy : rus_Q_xy;  /* M_tt_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_Q_xz : rus_Q_xz;  /* M_tt_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rus_Q_yy : rus_Q_yy;  /* M_tt_rus_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rus_Q_yz : rus_Q_yz;  /* M_tt_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rus_Q_zz : rus_Q_zz;  /* M_tt_rus_zz */
+        gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, rus_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, rus_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, rus_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, rus_Q_zz);  /* M_tt_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[6*count + k] = add ? terms[6*count + k] + rus_U_x : rus_U_x;  /* Z_t_rus_x */
-        terms[7*count + k] = add ? terms[7*count + k] + rus_U_y : rus_U_y;  /* Z_t_rus_y */
-        terms[8*count + k] = add ? terms[8*count + k] + rus_U_z : rus_U_z;  /* Z_t_rus_z */
+        gather(&terms[6*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[7*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[8*count + k], add, rus_U_z);  /* Z_t_z_of_legs */
         /* (rus-w_1) reciprocal vector 1 */
         o[0*count + k] = -rus_w_1_t_7;
         o[1*count + k] = -rus_w_1_t_8;
@@ -1505,9 +1524,9 @@ INLINE void dynamics_place_rus(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
@@ -1519,36 +1538,36 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_rus_xx = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_rus_xx + m_star;
-        const real M_tt_rus_yy = sums[3*w + k];
-        const real M_tt_yy = M_tt_rus_yy + m_star;
-        const real M_tt_rus_zz = sums[5*w + k];
-        const real M_tt_zz = M_tt_rus_zz + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (Z_t) translational part of Z */
         const real Z_p_x = m->Z_p_x;
-        const real Z_t_rus_x = sums[6*w + k];
-        const real Z_t_x = Z_p_x + Z_t_rus_x;
+        const real Z_t_x_of_legs = sums[6*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = m->Z_p_y;
-        const real Z_t_rus_y = sums[7*w + k];
-        const real Z_t_y = Z_p_y + Z_t_rus_y;
+        const real Z_t_y_of_legs = sums[7*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = m->Z_p_z;
-        const real Z_t_rus_z = sums[8*w + k];
-        const real Z_t_z = Z_p_z + Z_t_rus_z;
+        const real Z_t_z_of_legs = sums[8*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
+        M[0*NV*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[3*w + k] = M_tt_xy;
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[6*w + k] = M_tt_xz;
-        M[4*w + k] = M_tt_yy;
+        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*NV*w + k] = M_tt_xz;
+        M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
-        M[5*w + k] = M_tt_yz;
-        M[7*w + k] = M_tt_yz;
-        M[8*w + k] = M_tt_zz;
+        M[(NV + 2)*w + k] = M_tt_yz;
+        M[(2*NV + 1)*w + k] = M_tt_yz;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -1561,14 +1580,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[6] = {0}, sums[9] = {0}, terms_rus[9*LEGS(3)] = {0}, o_rus[6*LEGS(3)] = {0};
+    real s[6] = {0};
+    real sums[9] = {0};
+    real terms_rus[9*LEGS(LEGS_OF_rus)] = {0};
+    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     dynamics_before(1, X, V, s);
-    dynamics_legs_rus(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rus, o_rus);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        dynamics_place_rus(1, LEGS(3), o_rus, leg, leg, H, t);
+    dynamics_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
+        dynamics_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[n] = total(terms_rus + n*LEGS(3), 3);
+        sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     dynamics_after(m, 1, sums, M, Z, t);
 }
@@ -1576,17 +1598,19 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[6*LANES], sums[9*LANES], o_rus[6*LANES];
+    real s[6*LANES];
+    real sums[9*LANES];
+    real o_rus[6*LANES];
     dynamics_before(LANES, X, V, s);
     clear(sums, 9*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         dynamics_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
         dynamics_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
     }
     dynamics_after(m, LANES, sums, M, Z, t);
 }
 
-/* ---- M: 516 mul, 324 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- M ---- */
 INLINE void M_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -1811,12 +1835,12 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16;
         const real rus_Q_zz = -2*rus_Q_t_19 - rus_d_c_in_axes3_xx;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + rus_Q_xx : rus_Q_xx;  /* M_tt_rus_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_Q_xy : rus_Q_xy;  /* M_tt_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_Q_xz : rus_Q_xz;  /* M_tt_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rus_Q_yy : rus_Q_yy;  /* M_tt_rus_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rus_Q_yz : rus_Q_yz;  /* M_tt_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rus_Q_zz : rus_Q_zz;  /* M_tt_rus_zz */
+        gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, rus_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, rus_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, rus_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, rus_Q_zz);  /* M_tt_zz_of_legs */
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
@@ -1840,57 +1864,62 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_rus_xx = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_rus_xx + m_star;
-        const real M_tt_rus_yy = sums[3*w + k];
-        const real M_tt_yy = M_tt_rus_yy + m_star;
-        const real M_tt_rus_zz = sums[5*w + k];
-        const real M_tt_zz = M_tt_rus_zz + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
+        M[0*NV*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[3*w + k] = M_tt_xy;
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[6*w + k] = M_tt_xz;
-        M[4*w + k] = M_tt_yy;
+        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*NV*w + k] = M_tt_xz;
+        M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
-        M[5*w + k] = M_tt_yz;
-        M[7*w + k] = M_tt_yz;
-        M[8*w + k] = M_tt_zz;
+        M[(NV + 2)*w + k] = M_tt_yz;
+        M[(2*NV + 1)*w + k] = M_tt_yz;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
     }
 }
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[3] = {0}, sums[6] = {0}, terms_rus[6*LEGS(3)] = {0}, o_rus[2*LEGS(3)] = {0};
+    real s[3] = {0};
+    real sums[6] = {0};
+    real terms_rus[6*LEGS(LEGS_OF_rus)] = {0};
+    real o_rus[2*LEGS(LEGS_OF_rus)] = {0};
     M_before(1, X, s);
-    M_legs_rus(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rus, o_rus);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        M_place_rus(1, LEGS(3), o_rus, leg, t);
+    M_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
+        M_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_rus + n*LEGS(3), 3);
+        sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     M_after(m, 1, sums, M, t);
 }
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[3*LANES], sums[6*LANES], o_rus[2*LANES];
+    real s[3*LANES];
+    real sums[6*LANES];
+    real o_rus[2*LANES];
     M_before(LANES, X, s);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         M_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
         M_place_rus(LANES, LANES, o_rus, 0, t);
     }
     M_after(m, LANES, sums, M, t);
 }
 
-/* ---- Z: 594 mul, 378 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z ---- */
 INLINE void Z_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2149,7 +2178,7 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
            outwards, the force at the connection point left out */
         const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
         /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z;
         const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
@@ -2172,9 +2201,9 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
             axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + rus_U_x : rus_U_x;  /* Z_t_rus_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_U_y : rus_U_y;  /* Z_t_rus_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_U_z : rus_U_z;  /* Z_t_rus_z */
+        gather(&terms[0*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, rus_U_z);  /* Z_t_z_of_legs */
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
@@ -2199,14 +2228,14 @@ INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verd
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = m->Z_p_x;
-        const real Z_t_rus_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_rus_x;
+        const real Z_t_x_of_legs = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = m->Z_p_y;
-        const real Z_t_rus_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_rus_y;
+        const real Z_t_y_of_legs = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = m->Z_p_z;
-        const real Z_t_rus_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_rus_z;
+        const real Z_t_z_of_legs = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -2217,31 +2246,36 @@ INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verd
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[6] = {0}, sums[3] = {0}, terms_rus[3*LEGS(3)] = {0}, o_rus[2*LEGS(3)] = {0};
+    real s[6] = {0};
+    real sums[3] = {0};
+    real terms_rus[3*LEGS(LEGS_OF_rus)] = {0};
+    real o_rus[2*LEGS(LEGS_OF_rus)] = {0};
     Z_before(1, X, V, s);
-    Z_legs_rus(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rus, o_rus);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        Z_place_rus(1, LEGS(3), o_rus, leg, t);
+    Z_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
+        Z_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] = total(terms_rus + n*LEGS(3), 3);
+        sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     Z_after(m, 1, sums, Z, t);
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[6*LANES], sums[3*LANES], o_rus[2*LANES];
+    real s[6*LANES];
+    real sums[3*LANES];
+    real o_rus[2*LANES];
     Z_before(LANES, X, V, s);
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         Z_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
         Z_place_rus(LANES, LANES, o_rus, 0, t);
     }
     Z_after(m, LANES, sums, Z, t);
 }
 
-/* ---- H: 240 mul, 120 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- H ---- */
 INLINE void H_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2390,9 +2424,9 @@ INLINE void H_place_rus(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
@@ -2401,25 +2435,27 @@ INLINE void H_place_rus(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[3] = {0}, o_rus[6*LEGS(3)] = {0};
+    real s[3] = {0};
+    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     H_before(1, X, s);
-    H_legs_rus(m, 1, 0, 1, s, 0, LEGS(3), o_rus);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        H_place_rus(1, LEGS(3), o_rus, leg, leg, H, t);
+    H_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
+        H_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
     }
 }
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[3*LANES], o_rus[6*LANES];
+    real s[3*LANES];
+    real o_rus[6*LANES];
     H_before(LANES, X, s);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         H_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
         H_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
     }
 }
 
-/* ---- required: 633 mul, 417 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- required ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
     *A, real *s)
 {
@@ -2719,7 +2755,7 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
            left out */
         const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z;
         const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c) leg force on the platform without actuation and without the mass at the connection
@@ -2741,9 +2777,9 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_c_z = axis_x_rus_axes3_z*rus_c_in_axes3_x +
             axis_y_rus_axes3_z*rus_c_in_axes3_y + axis_z_rus_axes3_z*rus_c_in_axes3_z;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + rus_c_x : rus_c_x;  /* R_t_t */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_c_y : rus_c_y;  /* R_t_t_2 */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_c_z : rus_c_z;  /* R_t_t_3 */
+        gather(&terms[0*count + k], add, rus_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, rus_c_y);  /* R_t_y_of_legs */
+        gather(&terms[2*count + k], add, rus_c_z);  /* R_t_z_of_legs */
         /* (rus-w_1) reciprocal vector 1 */
         o[0*count + k] = -rus_w_1_t_7;
         o[1*count + k] = -rus_w_1_t_8;
@@ -2763,9 +2799,9 @@ INLINE void required_place_rus(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
     }
@@ -2775,15 +2811,15 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
-        const real R_t_t = sums[0*w + k];
+        const real R_t_x_of_legs = sums[0*w + k];
         const real f_p_x = s[9*w + k];
-        const real R_t_x = f_p_x - R_t_t;
-        const real R_t_t_2 = sums[1*w + k];
+        const real R_t_x = f_p_x - R_t_x_of_legs;
+        const real R_t_y_of_legs = sums[1*w + k];
         const real f_p_y = s[10*w + k];
-        const real R_t_y = f_p_y - R_t_t_2;
-        const real R_t_t_3 = sums[2*w + k];
+        const real R_t_y = f_p_y - R_t_y_of_legs;
+        const real R_t_z_of_legs = sums[2*w + k];
         const real f_p_z = s[11*w + k];
-        const real R_t_z = f_p_z - R_t_t_3;
+        const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -2794,14 +2830,17 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[12] = {0}, sums[3] = {0}, terms_rus[3*LEGS(3)] = {0}, o_rus[5*LEGS(3)] = {0};
+    real s[12] = {0};
+    real sums[3] = {0};
+    real terms_rus[3*LEGS(LEGS_OF_rus)] = {0};
+    real o_rus[5*LEGS(LEGS_OF_rus)] = {0};
     required_before(m, 1, X, V, A, s);
-    required_legs_rus(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rus, o_rus);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        required_place_rus(1, LEGS(3), o_rus, leg, leg, H, t);
+    required_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
+        required_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] = total(terms_rus + n*LEGS(3), 3);
+        sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     required_after(1, s, sums, required);
 }
@@ -2809,17 +2848,19 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[12*LANES], sums[3*LANES], o_rus[5*LANES];
+    real s[12*LANES];
+    real sums[3*LANES];
+    real o_rus[5*LANES];
     required_before(m, LANES, X, V, A, s);
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         required_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
         required_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
-/* ---- inverse_kinematics: 120 mul, 66 add, 6 div, 6 sqrt, 9 trig, every leg counted ---- */
+/* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2934,7 +2975,7 @@ INLINE void inverse_kinematics_place_rus(size_t w, size_t count, const real *o, 
     first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(3*leg)*w + k] = o[0*count + first + k];
+        q[3*leg*w + k] = o[0*count + first + k];
         q[(1 + 3*leg)*w + k] = o[1*count + first + k];
         q[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -2945,25 +2986,27 @@ INLINE void inverse_kinematics_place_rus(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[3] = {0}, o_rus[6*LEGS(3)] = {0};
+    real s[3] = {0};
+    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     inverse_kinematics_before(1, X, s);
-    inverse_kinematics_legs_rus(m, 1, 0, 1, s, 0, LEGS(3), o_rus);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        inverse_kinematics_place_rus(1, LEGS(3), o_rus, leg, leg, q, t);
+    inverse_kinematics_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
+        inverse_kinematics_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, q, t);
     }
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[3*LANES], o_rus[6*LANES];
+    real s[3*LANES];
+    real o_rus[6*LANES];
     inverse_kinematics_before(LANES, X, s);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         inverse_kinematics_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
         inverse_kinematics_place_rus(LANES, LANES, o_rus, leg, 0, q, t);
     }
 }
 
-/* ---- joint_rates: 297 mul, 156 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates ---- */
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3140,7 +3183,7 @@ INLINE void joint_rates_place_rus(size_t w, size_t count, const real *o, size_t 
     real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(3*leg)*w + k] = o[0*count + first + k];
+        qd[3*leg*w + k] = o[0*count + first + k];
         qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
         qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -3151,26 +3194,28 @@ INLINE void joint_rates_place_rus(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[6] = {0}, o_rus[6*LEGS(3)] = {0};
+    real s[6] = {0};
+    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     joint_rates_before(1, X, V, s);
-    joint_rates_legs_rus(m, 1, 0, 1, s, 0, LEGS(3), o_rus);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_rates_place_rus(1, LEGS(3), o_rus, leg, leg, qd, t);
+    joint_rates_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
+        joint_rates_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, qd, t);
     }
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[6*LANES], o_rus[6*LANES];
+    real s[6*LANES];
+    real o_rus[6*LANES];
     joint_rates_before(LANES, X, V, s);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         joint_rates_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
         joint_rates_place_rus(LANES, LANES, o_rus, leg, 0, qd, t);
     }
 }
 
-/* ---- joint_accelerations: 414 mul, 213 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations ---- */
 INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
     *s)
 {
@@ -3403,7 +3448,7 @@ INLINE void joint_accelerations_place_rus(size_t w, size_t count, const real *o,
     size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(3*leg)*w + k] = o[0*count + first + k];
+        qdd[3*leg*w + k] = o[0*count + first + k];
         qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
         qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -3415,26 +3460,28 @@ INLINE void joint_accelerations_place_rus(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[9] = {0}, o_rus[6*LEGS(3)] = {0};
+    real s[9] = {0};
+    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
     joint_accelerations_before(1, X, V, A, s);
-    joint_accelerations_legs_rus(m, 1, 0, 1, s, 0, LEGS(3), o_rus);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_accelerations_place_rus(1, LEGS(3), o_rus, leg, leg, qdd, t);
+    joint_accelerations_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
+        joint_accelerations_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[9*LANES], o_rus[6*LANES];
+    real s[9*LANES];
+    real o_rus[6*LANES];
     joint_accelerations_before(LANES, X, V, A, s);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         joint_accelerations_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
         joint_accelerations_place_rus(LANES, LANES, o_rus, leg, 0, qdd, t);
     }
 }
 
-/* ---- legs: 639 mul, 411 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs ---- */
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3718,7 +3765,7 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, 
            left out */
         const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z;
         const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c) leg force on the platform without actuation and without the mass at the connection
@@ -3764,32 +3811,33 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, 
 }
 
 INLINE void legs_place_rus(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o[0*count + first + k];
-        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        leg_force[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        drive[(3*leg)*w + k] = o[3*count + first + k];
-        drive[(1 + 3*leg)*w + k] = o[4*count + first + k];
-        drive[(2 + 3*leg)*w + k] = o[5*count + first + k];
+        leg_force[3*leg*w + k] = o[0*count + first + k];
+        leg_force[(3*leg + 1)*w + k] = o[1*count + first + k];
+        leg_force[(3*leg + 2)*w + k] = o[2*count + first + k];
+        actuator[3*leg*w + k] = o[3*count + first + k];
+        actuator[(3*leg + 1)*w + k] = o[4*count + first + k];
+        actuator[(3*leg + 2)*w + k] = o[5*count + first + k];
         t->unreachable[k] += o[6*count + first + k];
         t->singular[k] += o[7*count + first + k];
     }
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
-    real s[9] = {0}, o_rus[8*LEGS(3)] = {0};
+    real s[9] = {0};
+    real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
     legs_before(1, X, V, A, s);
-    legs_legs_rus(m, 1, 0, 1, s, 0, LEGS(3), o_rus);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        legs_place_rus(1, LEGS(3), o_rus, leg, leg, leg_force, drive, t);
+    legs_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
+        legs_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, leg_force, actuator, t);
     }
 }
 
-/* ---- potential: 189 mul, 123 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3922,7 +3970,7 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
             rus_h_3_in_spec3_y*rus_s_2 + rus_link1_mass*(rus_c_1*rus_potential_t_2 -
             rus_potential_t*rus_s_1));
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + rus_potential_t_5 : rus_potential_t_5;  /* potential_t_2 */
+        gather(&terms[0*count + k], add, rus_potential_t_5);  /* potential_of_legs */
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         o[1*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
@@ -3943,9 +3991,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
+        const real potential_of_legs = sums[0*w + k];
         const real potential_t = s[3*w + k];
-        const real potential_t_2 = sums[0*w + k];
-        const real potential_ = -potential_t - potential_t_2;
+        const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
@@ -3953,19 +4001,22 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[4] = {0}, sums[1] = {0}, terms_rus[1*LEGS(3)] = {0}, o_rus[2*LEGS(3)] = {0};
+    real s[4] = {0};
+    real sums[1] = {0};
+    real terms_rus[LEGS(LEGS_OF_rus)] = {0};
+    real o_rus[2*LEGS(LEGS_OF_rus)] = {0};
     potential_before(m, 1, X, s);
-    potential_legs_rus(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rus, o_rus);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        potential_place_rus(1, LEGS(3), o_rus, leg, t);
+    potential_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
+        potential_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_rus + n*LEGS(3), 3);
+        sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     potential_after(1, s, sums, potential);
 }
 
-/* ---- condition: 262 mul, 147 add, 9 div, 13 sqrt, 0 trig, every leg counted ---- */
+/* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
     verdict *t)
 {
@@ -4100,7 +4151,7 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         const real rus_w_1_t_9 = inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x);
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rus_pivot_size = magnitude(rus_rho2_1);
         const real rus_pivot_size_2 = magnitude(rus_rho2_2);
         const real rus_pivot_size_3 = magnitude(rus_r_1_t);
@@ -4121,13 +4172,13 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         const real rus_spread_t_4 = rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 +
             rus_spread_t_3*rus_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + rus_spread_t_4 : rus_spread_t_4;  /* spread_rus */
+        gather(&terms[0*count + k], add, rus_spread_t_4);  /* spread_rus */
         /* (rus-w_1) reciprocal vector 1 */
         o[0*count + k] = -rus_w_1_t_7;
         o[1*count + k] = -rus_w_1_t_8;
         o[2*count + k] = -rus_w_1_t_9;
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[3*count + k] = rus_least_pivots;
         o[4*count + k] = rus_disc_1;
         o[7*count + k] = (rus_w_1_t_7 + rus_w_1_t_8) + (rus_w_1_t_9 + (rus_least_pivots +
@@ -4147,11 +4198,11 @@ INLINE void condition_place_rus(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        pivots[(leg)*w + k] = o[3*count + first + k];
-        reach[(leg)*w + k] = o[4*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        pivots[leg*w + k] = o[3*count + first + k];
+        reach[leg*w + k] = o[4*count + first + k];
         t->unreachable[k] += o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
         t->total[k] += o[7*count + first + k];
@@ -4175,14 +4226,17 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[3] = {0}, sums[1] = {0}, terms_rus[1*LEGS(3)] = {0}, o_rus[8*LEGS(3)] = {0};
+    real s[3] = {0};
+    real sums[1] = {0};
+    real terms_rus[LEGS(LEGS_OF_rus)] = {0};
+    real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rus(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_rus, o_rus);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        condition_place_rus(1, LEGS(3), o_rus, leg, leg, H, pivots, reach, t);
+    condition_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
+        condition_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_rus + n*LEGS(3), 3);
+        sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     condition_after(m, 1, sums, lengths, t);
 }
@@ -4193,109 +4247,109 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, M_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, M_out);
+        refuse(NV*NV, M_out);
     }
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[3*LANES], M[9*LANES];
+    real X_in[NQ*LANES], M[NV*NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
     suspect(&why, code);
-    deliver(9, M, M_out);
+    deliver(NV*NV, M, M_out);
 }
 
 INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
-        check(3, 1, Z_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, Z_out);
+        refuse(NV, Z_out);
     }
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], Z[3*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
     suspect(&why, code);
-    deliver(3, Z, Z_out);
+    deliver(NV, Z, Z_out);
 }
 
 INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, H_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, H_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[3*LANES], H[9*LANES];
+    real X_in[NQ*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
     suspect(&why, code);
-    deliver(9, H, H_out);
+    deliver(NV*NU, H, H_out);
 }
 
 INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, q_out, why.overflow);
+        check(NJ, 1, q_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, q_out);
+        refuse(NJ, q_out);
     }
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[3*LANES], q[9*LANES];
+    real X_in[NQ*LANES], q[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
     suspect(&why, code);
-    deliver(9, q, q_out);
+    deliver(NJ, q, q_out);
 }
 
 INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4303,32 +4357,32 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, qd_out, why.overflow);
+        check(NJ, 1, qd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, qd_out);
+        refuse(NJ, qd_out);
     }
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], qd[9*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
     suspect(&why, code);
-    deliver(9, qd, qd_out);
+    deliver(NJ, qd, qd_out);
 }
 
 INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
@@ -4336,34 +4390,34 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, qdd_out, why.overflow);
+        check(NJ, 1, qdd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, qdd_out);
+        refuse(NJ, qdd_out);
     }
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd[9*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
     suspect(&why, code);
-    deliver(9, qdd, qdd_out);
+    deliver(NJ, qdd, qdd_out);
 }
 
 INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4371,56 +4425,56 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, M_out, why.overflow);
-        check(3, 1, Z_out, why.overflow);
-        check(9, 1, H_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, M_out);
-        refuse(3, Z_out);
-        refuse(9, H_out);
+        refuse(NV*NV, M_out);
+        refuse(NV, Z_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], M[9*LANES], Z[3*LANES], H[9*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     suspect(&why, code);
-    deliver(9, M, M_out);
-    deliver(3, Z, Z_out);
-    deliver(9, H, H_out);
+    deliver(NV*NV, M, M_out);
+    deliver(NV, Z, Z_out);
+    deliver(NV*NU, H, H_out);
 }
 
-INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
+INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
+    real *a, const real *b, real *x, real *unsure, real *total)
 {
     for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(0)*w + k];
-        real a01 = a[(1)*w + k];
-        real a02 = a[(2)*w + k];
-        real b0 = b[0*w + k];
-        real a10 = a[(1*stride + 0)*w + k];
-        real a11 = a[(1*stride + 1)*w + k];
-        real a12 = a[(1*stride + 2)*w + k];
-        real b1 = b[1*w + k];
-        real a20 = a[(2*stride + 0)*w + k];
-        real a21 = a[(2*stride + 1)*w + k];
-        real a22 = a[(2*stride + 2)*w + k];
-        real b2 = b[2*w + k];
+        real a00 = a[(order[0]*stride + 0)*w + k];
+        real a01 = a[(order[0]*stride + 1)*w + k];
+        real a02 = a[(order[0]*stride + 2)*w + k];
+        real b0 = b[order[0]*w + k];
+        real a10 = a[(order[1]*stride + 0)*w + k];
+        real a11 = a[(order[1]*stride + 1)*w + k];
+        real a12 = a[(order[1]*stride + 2)*w + k];
+        real b1 = b[order[1]*w + k];
+        real a20 = a[(order[2]*stride + 0)*w + k];
+        real a21 = a[(order[2]*stride + 1)*w + k];
+        real a22 = a[(order[2]*stride + 2)*w + k];
+        real b2 = b[order[2]*w + k];
         const real f0 = 1/a00;
         const real d1 = a00*a11 - a10*a01;
         const real f1 = a00/d1;
@@ -4435,251 +4489,220 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         a22 -= g21*a12;
         b2 -= g21*b1;
         const real f2 = 1/a22;
-        const real x2 = (b2)*f2;
-        const real x1 = (b1)*f1 - a12*f1*x2;
+        const real x2 = b2*f2;
+        const real x1 = b1*f1 - a12*f1*x2;
         const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
         x[0*w + k] = x0;
         x[1*w + k] = x1;
         x[2*w + k] = x2;
         total[k] += x0 + (x1 + x2);
-        const real most0 = magnitude(g10);
-        const real most1 = larger(magnitude(g20), magnitude(g21));
-        const real most2 = magnitude(f2);
-        const real most3 = larger(magnitude(f0), magnitude(f1));
-        unsure[k] += UNLESS(most0 <= R(10)) + UNLESS(most1 <= R(40)) + UNLESS(most2 <= R(250)) +
-            UNLESS(most3 <= R(1000)) + UNLESS(is_finite(a00 + d1 + a22));
+        const real most0 = larger(magnitude(g10)*(sizes[0]/sizes[1]),
+            magnitude(g20)*(sizes[0]/sizes[2]));
+        const real most1 = magnitude(g21)*(sizes[1]/sizes[2]);
+        unsure[k] += UNLESS(larger(magnitude(f0)*sizes[0], larger(magnitude(f1)*sizes[1],
+            magnitude(f2)*sizes[2])) <= R(1000));
+        unsure[k] += UNLESS(larger(most0, most1) <= R(10));
+        unsure[k] += UNLESS(is_finite(a00 + d1 + a22));
     }
 }
 
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real wrench_in[3], required[3] = {0}, H[9] = {0}, subtract_2[3] = {0}, unsure_4[1] = {0},
-        work[12];
+    static const size_t order_tau[] = {0, 1, 2};
+    static const real sizes_tau[] = {1.0, 1.0, 4.0};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(1, 3, H, subtract_2, tau_out, unsure_4, why.total);
-    if (unsure_4[0] > 0) {
-        set_matrix(3, 1, H, work);
-        solve_apart(3, subtract_2, work, tau_out, why.singular);
-        check(3, 1, tau_out, why.overflow);
+    eliminate_3(1, NV, order_tau, sizes_tau, H, subtract_1, tau_out, unsure_tau, why.total);
+    if (unsure_tau[0] > 0) {
+        set_matrix(NV, 1, H, work);
+        solve_apart(NV, subtract_1, work, tau_out, why.singular);
+        check(NV, 1, tau_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
-        check(3, 1, tau_out, why.overflow);
+        check(NU, 1, tau_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, tau_out);
+        refuse(NU, tau_out);
     }
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES], required[3*LANES],
-        H[9*LANES], subtract_2[3*LANES], tau[3*LANES];
+    static const size_t order_tau[] = {0, 1, 2};
+    static const real sizes_tau[] = {1.0, 1.0, 4.0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
+        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
-    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(LANES, 3, H, subtract_2, tau, why.singular, why.total);
+    eliminate_3(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
     suspect(&why, code);
-    deliver(3, tau, tau_out);
-}
-
-INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
-{
-    for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(0)*w + k];
-        real a01 = a[(1)*w + k];
-        real a02 = a[(2)*w + k];
-        real b0 = b[0*w + k];
-        real a10 = a[(1*stride + 0)*w + k];
-        real a11 = a[(1*stride + 1)*w + k];
-        real a12 = a[(1*stride + 2)*w + k];
-        real b1 = b[1*w + k];
-        real a20 = a[(2*stride + 0)*w + k];
-        real a21 = a[(2*stride + 1)*w + k];
-        real a22 = a[(2*stride + 2)*w + k];
-        real b2 = b[2*w + k];
-        const real f0 = 1/a00;
-        const real d1 = a00*a11 - a10*a01;
-        const real f1 = a00/d1;
-        const real g10 = a10*f0;
-        a12 -= g10*a02;
-        b1 -= g10*b0;
-        const real g20 = a20*f0;
-        a21 -= g20*a01;
-        a22 -= g20*a02;
-        b2 -= g20*b0;
-        const real g21 = a21*f1;
-        a22 -= g21*a12;
-        b2 -= g21*b1;
-        const real f2 = 1/a22;
-        const real x2 = (b2)*f2;
-        const real x1 = (b1)*f1 - a12*f1*x2;
-        const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
-        x[0*w + k] = x0;
-        x[1*w + k] = x1;
-        x[2*w + k] = x2;
-        total[k] += x0 + (x1 + x2);
-        const real most0 = larger(magnitude(g10), larger(magnitude(g20), magnitude(g21)));
-        const real most1 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f2)));
-        unsure[k] += UNLESS(most0 <= R(10)) + UNLESS(most1 <= R(62.5)) + UNLESS(is_finite(a00 + d1
-            + a22));
-    }
+    deliver(NU, tau, tau_out);
 }
 
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, int *code)
 {
-    real wrench_in[3], M[9] = {0}, Z[3] = {0}, H[9] = {0}, times_1[3] = {0}, add_3[3] = {0},
-        subtract_4[3] = {0}, unsure_7[1] = {0}, work[12];
+    static const size_t order_A[] = {0, 1, 2};
+    static const real sizes_A[] = {16.0, 16.0, 16.0};
+    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
+        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(tau, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
-    product(3, 3, 1, 1, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, 1, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    eliminate_1(1, 3, M, subtract_4, A_out, unsure_7, why.total);
-    if (unsure_7[0] > 0) {
-        set_matrix(3, 1, M, work);
-        solve_apart(3, subtract_4, work, A_out, why.singular);
-        check(3, 1, A_out, why.overflow);
+    eliminate_3(1, NV, order_A, sizes_A, M, subtract_1, A_out, unsure_A, why.total);
+    if (unsure_A[0] > 0) {
+        set_matrix(NV, 1, M, work);
+        solve_apart(NV, subtract_1, work, A_out, why.singular);
+        check(NV, 1, A_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
-        check(3, 1, A_out, why.overflow);
+        check(NV, 1, A_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, A_out);
+        refuse(NV, A_out);
     }
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES], M[9*LANES], Z[3*LANES],
-        H[9*LANES], times_1[3*LANES] = {0}, add_3[3*LANES], subtract_4[3*LANES], A[3*LANES];
+    static const size_t order_A[] = {0, 1, 2};
+    static const real sizes_A[] = {16.0, 16.0, 16.0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
+        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
+        A[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    tau = side_by_side(3, tau, tau_in, why.total);
-    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    product(3, 3, 1, LANES, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    eliminate_1(LANES, 3, M, subtract_4, A, why.singular, why.total);
+    eliminate_3(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
     suspect(&why, code);
-    deliver(3, A, A_out);
+    deliver(NV, A, A_out);
 }
 
 INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, A, why.invalid);
+    check(NV, 1, A, why.invalid);
     const real *const completed = A;
-    check(3, 1, completed, why.overflow);
+    check(NV, 1, completed, why.overflow);
     judge(&why, code);
-    copy(3, completed, completed_out);
+    copy(NV, completed, completed_out);
     if (*code != OK) {
-        refuse(3, completed_out);
+        refuse(NV, completed_out);
     }
 }
 
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2};
-    real wrench_in[3], required[3] = {0}, H[9] = {0}, subtract_2[3] = {0}, solve_3[3] = {0},
-        unsure_5[1] = {0}, leg_force[9] = {0}, drive[9] = {0}, forces[9] = {0}, work[12];
+    static const size_t order_solve_1[] = {0, 1, 2};
+    static const real sizes_solve_1[] = {1.0, 1.0, 4.0};
+    static const size_t places_forces[] = {0, 1, 2};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(1, 3, H, subtract_2, solve_3, unsure_5, why.total);
-    if (unsure_5[0] > 0) {
-        set_matrix(3, 1, H, work);
-        solve_apart(3, subtract_2, work, solve_3, why.singular);
-        check(3, 1, solve_3, why.overflow);
+    eliminate_3(1, NV, order_solve_1, sizes_solve_1, H, subtract_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NV, 1, H, work);
+        solve_apart(NV, subtract_1, work, solve_1, why.singular);
+        check(NV, 1, solve_1, why.overflow);
     }
-    legs_run(m, X, V, A, leg_force, drive, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    legs_run(m, X, V, A, leg_force, actuator, &why);
+    for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
-    add_forces(3, 3, 1, places_0, solve_3, drive, forces);
-    check(9, 1, forces, why.overflow);
+    add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
+    check(NL*NL, 1, forces, why.overflow);
     judge(&why, code);
-    copy(9, forces, forces_out);
+    copy(NL*NL, forces, forces_out);
     if (*code != OK) {
-        refuse(9, forces_out);
+        refuse(NL*NL, forces_out);
     }
 }
 
 INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
-    real M[9] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
-    half_form(3, 1, V, M, kinetic);
+    half_form(NV, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
@@ -4695,51 +4718,50 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
 INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, real *legs_out, int
     *code)
 {
-    real H[9] = {0}, lengths[2] = {0}, reach[3] = {0}, sigma[3] = {0};
+    real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     condition_run(m, X, H, lengths, legs_out, reach, &why);
-    singular_values(3, 3, H, sigma);
+    singular_values(NV, NU, H, sigma);
     if (!is_finite(why.total[0])) {
-        check(3, 1, legs_out, why.overflow);
+        check(NL, 1, legs_out, why.overflow);
     }
-    check(3, 1, sigma, why.overflow);
+    check(NV, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(3, sigma, sigma_out);
+    copy(NV, sigma, sigma_out);
     if (*code != OK) {
-        refuse(3, sigma_out);
-        refuse(3, legs_out);
+        refuse(NV, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 3, 6};
-    static const size_t places_1[] = {0, 1, 2};
-    real q[9] = {0}, take_1[3] = {0}, subtract_2[3] = {0}, gap[3] = {0};
+    static const size_t places_gap[] = {0, 1, 2};
+    real q[NJ] = {0}, take_1[3] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(q_actuated, 3);
+    const real total_in = total(X, NQ) + total(q_actuated, NU);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, q_actuated, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(3, 1, places_0, q, take_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_2[i] = q_actuated[i] - take_1[i];
+    take(3, 1, delta_ACTUATED, q, take_1);
+    for (size_t i = 0; i < NU; ++i) {
+        subtract_1[i] = q_actuated[i] - take_1[i];
     }
-    for (size_t i = 0; i < 3; ++i) {
-        gap[i] = subtract_2[i];
+    for (size_t i = 0; i < NU; ++i) {
+        gap[i] = subtract_1[i];
     }
-    wrap_turns(3, 1, places_1, gap);
-    check(3, 1, gap, why.overflow);
+    wrap_turns(NU, 1, places_gap, gap);
+    check(NU, 1, gap, why.overflow);
     judge(&why, code);
-    copy(3, gap, gap_out);
+    copy(NU, gap, gap_out);
     if (*code != OK) {
-        refuse(3, gap_out);
+        refuse(NU, gap_out);
     }
 }
 
@@ -4747,23 +4769,23 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, slope_out, why.overflow);
+        check(NV*NU, 1, slope_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, slope_out);
+        refuse(NV*NU, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
-    enum { N = 3, NV = 3, TRIALS = 12 };
+    enum { N = NU, TRIALS = 12 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[3] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     mismatch_one(m, found, q_actuated, gap, &code);
@@ -4806,30 +4828,30 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
-    real X[3] = {0};
+    real X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(q_actuated, 3) + total(X0, 3);
+    const real total_in = total(q_actuated, NU) + total(X0, NQ);
     if (!is_finite(total_in)) {
-        check(3, 1, q_actuated, why.invalid);
-        check(3, 1, X0, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
+        check(NQ, 1, X0, why.invalid);
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(3, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(3, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(3, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
-    real subtract_1[3] = {0};
+    real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, V, why.invalid);
-    for (size_t i = 0; i < 3; ++i) {
+    check(NV, 1, V, why.invalid);
+    for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
@@ -4844,85 +4866,85 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
     *code)
 {
-    real M[9] = {0}, momentum[3] = {0};
+    real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
-    product(3, 3, 1, 1, M, V, momentum);
-    check(3, 1, momentum, why.overflow);
+    product(NV, NV, 1, 1, M, V, momentum);
+    check(NV, 1, momentum, why.overflow);
     judge(&why, code);
-    copy(3, momentum, momentum_out);
+    copy(NV, momentum, momentum_out);
     if (*code != OK) {
-        refuse(3, momentum_out);
+        refuse(NV, momentum_out);
     }
 }
 
 INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
     int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], M[9*LANES], momentum[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     M_run_lanes(m, X, M, &why);
-    product(3, 3, 1, LANES, M, V, momentum);
-    add_up(3, momentum, why.total);
+    product(NV, NV, 1, LANES, M, V, momentum);
+    add_up(NV, momentum, why.total);
     suspect(&why, code);
-    deliver(3, momentum, momentum_out);
+    deliver(NV, momentum, momentum_out);
 }
 
 INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real q[9] = {0}, margins[9] = {0};
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    real q[NJ] = {0}, margins[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
-    unlimited(9, 9, 1, places_0, margins, why.overflow);
+    unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     judge(&why, code);
-    copy(9, margins, margins_out);
+    copy(NJ, margins, margins_out);
     if (*code != OK) {
-        refuse(9, margins_out);
+        refuse(NJ, margins_out);
     }
 }
 
 INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real X_in[3*LANES], q[9*LANES], margins[9*LANES];
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 9*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         margins[i] = q[i];
     }
-    unlimited(9, 9, LANES, places_0, margins, why.invalid);
+    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
     suspect(&why, code);
-    deliver(9, margins, margins_out);
+    deliver(NJ, margins, margins_out);
 }
 
 INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real q[9] = {0}, subtract_1[9] = {0}, within[1] = {0};
+    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(9, 1, subtract_1, within, why.overflow);
+    not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     judge(&why, code);
     copy(1, within, within_out);
@@ -4933,15 +4955,15 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
 
 INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real X_in[3*LANES], q[9*LANES], subtract_1[9*LANES], within[1*LANES] = {0};
+    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 9*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(9, LANES, subtract_1, within, why.invalid);
+    not_negative(NJ, LANES, subtract_1, within, why.invalid);
     add_up(1, within, why.total);
     suspect(&why, code);
     deliver(1, within, within_out);
@@ -4949,129 +4971,123 @@ INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_o
 
 INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 3, 6};
-    real q_of_inverse_kinematics[9] = {0}, q[3] = {0};
+    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
-    take(3, 1, places_0, q_of_inverse_kinematics, q);
-    check(3, 1, q, why.overflow);
+    take(NU, 1, delta_ACTUATED, q_of_inverse_kinematics, q);
+    check(NU, 1, q, why.overflow);
     judge(&why, code);
-    copy(3, q, q_out);
+    copy(NU, q, q_out);
     if (*code != OK) {
-        refuse(3, q_out);
+        refuse(NU, q_out);
     }
 }
 
 INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 3, 6};
-    real X_in[3*LANES], q_of_inverse_kinematics[9*LANES], q[3*LANES] = {0};
+    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(3, 1*LANES, places_0, q_of_inverse_kinematics, q);
-    add_up(3, q, why.total);
+    take(NU, LANES, delta_ACTUATED, q_of_inverse_kinematics, q);
+    add_up(NU, q, why.total);
     suspect(&why, code);
-    deliver(3, q, q_out);
+    deliver(NU, q, q_out);
 }
 
 INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    static const size_t places_0[] = {0, 3, 6};
-    real qd_of_joint_rates[9] = {0}, qd[3] = {0};
+    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
-    take(3, 1, places_0, qd_of_joint_rates, qd);
-    check(3, 1, qd, why.overflow);
+    take(NU, 1, delta_ACTUATED, qd_of_joint_rates, qd);
+    check(NU, 1, qd, why.overflow);
     judge(&why, code);
-    copy(3, qd, qd_out);
+    copy(NU, qd, qd_out);
     if (*code != OK) {
-        refuse(3, qd_out);
+        refuse(NU, qd_out);
     }
 }
 
 INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 3, 6};
-    real X_in[3*LANES], V_in[3*LANES], qd_of_joint_rates[9*LANES], qd[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(3, 1*LANES, places_0, qd_of_joint_rates, qd);
-    add_up(3, qd, why.total);
+    take(NU, LANES, delta_ACTUATED, qd_of_joint_rates, qd);
+    add_up(NU, qd, why.total);
     suspect(&why, code);
-    deliver(3, qd, qd_out);
+    deliver(NU, qd, qd_out);
 }
 
 INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 3, 6};
-    real qdd_of_joint_accelerations[9] = {0}, qdd[3] = {0};
+    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1, places_0, qdd_of_joint_accelerations, qdd);
-    check(3, 1, qdd, why.overflow);
+    take(NU, 1, delta_ACTUATED, qdd_of_joint_accelerations, qdd);
+    check(NU, 1, qdd, why.overflow);
     judge(&why, code);
-    copy(3, qdd, qdd_out);
+    copy(NU, qdd, qdd_out);
     if (*code != OK) {
-        refuse(3, qdd_out);
+        refuse(NU, qdd_out);
     }
 }
 
 INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 3, 6};
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of_joint_accelerations[9*LANES],
-        qdd[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
+        qdd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
-    add_up(3, qdd, why.total);
+    take(NU, LANES, delta_ACTUATED, qdd_of_joint_accelerations, qdd);
+    add_up(NU, qdd, why.total);
     suspect(&why, code);
-    deliver(3, qdd, qdd_out);
+    deliver(NU, qdd, qdd_out);
 }
 
 INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real H[9] = {0}, times_1[3] = {0}, power[1] = {0};
+    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(tau, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
     H_run(m, X, H, &why);
-    product(3, 3, 1, 1, H, tau, times_1);
-    inner(3, 1, times_1, V, power);
+    product(NV, NU, 1, 1, H, tau, times_1);
+    inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     judge(&why, code);
     copy(1, power, power_out);
@@ -5083,16 +5099,16 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
 INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], H[9*LANES], times_1[3*LANES] = {0},
-        power[1*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        power[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    tau = side_by_side(3, tau, tau_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
     H_run_lanes(m, X, H, &why);
-    product(3, 3, 1, LANES, H, tau, times_1);
-    inner(3, LANES, times_1, V, power);
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    inner(NV, LANES, times_1, V, power);
     add_up(1, power, why.total);
     suspect(&why, code);
     deliver(1, power, power_out);
@@ -5100,71 +5116,71 @@ INLINE void power_lanes(const prepared *m, const real *X, const real *V, const r
 
 INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
-    real X_moved[3] = {0};
+    real X_moved[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(step, 3);
+    const real total_in = total(X, NQ) + total(step, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, step, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, step, why.invalid);
     }
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(3, 1, X_moved, why.overflow);
+    check(NQ, 1, X_moved, why.overflow);
     judge(&why, code);
-    copy(3, X_moved, X_moved_out);
+    copy(NQ, X_moved, X_moved_out);
     if (*code != OK) {
-        refuse(3, X_moved_out);
+        refuse(NQ, X_moved_out);
     }
 }
 
 INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
-    real step[3] = {0};
+    real step[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 3) + total(X1, 3);
+    const real total_in = total(X0, NQ) + total(X1, NQ);
     if (!is_finite(total_in)) {
-        check(3, 1, X0, why.invalid);
-        check(3, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
     }
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NV; ++i) {
         step[i] = X1[i] - X0[i];
     }
-    check(3, 1, step, why.overflow);
+    check(NV, 1, step, why.overflow);
     judge(&why, code);
-    copy(3, step, step_out);
+    copy(NV, step, step_out);
     if (*code != OK) {
-        refuse(3, step_out);
+        refuse(NV, step_out);
     }
 }
 
 INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    real subtract_1[3] = {0}, scale_2[3] = {0}, X[3] = {0};
+    real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 3) + total(X1, 3) + total(s, 1);
+    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
     if (!is_finite(total_in)) {
-        check(3, 1, X0, why.invalid);
-        check(3, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
-    for (size_t i = 0; i < 3; ++i) {
-        scale_2[i] = subtract_1[i]*s[i%(1)];
+    for (size_t i = 0; i < NQ; ++i) {
+        scale_1[i] = subtract_1[i]*s[i%(1)];
     }
-    for (size_t i = 0; i < 3; ++i) {
-        X[i] = X0[i] + scale_2[i];
+    for (size_t i = 0; i < NQ; ++i) {
+        X[i] = X0[i] + scale_1[i];
     }
-    check(3, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(3, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(3, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -5183,16 +5199,16 @@ size_t delta_M_batch(const delta_model *model, size_t n, const delta_real *X, de
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_lanes(model, X + 3*i, M + 9*i, codes);
+        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_M(model, X + 3*(i + k), M + 9*(i + k));
+                codes[k] = delta_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_M(model, X + 3*i, M + 9*i);
+        const int code = delta_M(model, X + NQ*i, M + NV*NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5211,16 +5227,16 @@ size_t delta_Z_batch(const delta_model *model, size_t n, const delta_real *X, co
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_lanes(model, X + 3*i, V + 3*i, Z + 3*i, codes);
+        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_Z(model, X + 3*(i + k), V + 3*(i + k), Z + 3*(i + k));
+                codes[k] = delta_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_Z(model, X + 3*i, V + 3*i, Z + 3*i);
+        const int code = delta_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5239,16 +5255,16 @@ size_t delta_H_batch(const delta_model *model, size_t n, const delta_real *X, de
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_lanes(model, X + 3*i, H + 9*i, codes);
+        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_H(model, X + 3*(i + k), H + 9*(i + k));
+                codes[k] = delta_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_H(model, X + 3*i, H + 9*i);
+        const int code = delta_H(model, X + NQ*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5267,16 +5283,16 @@ size_t delta_inverse_kinematics_batch(const delta_model *model, size_t n, const 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_lanes(model, X + 3*i, q + 9*i, codes);
+        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_inverse_kinematics(model, X + 3*(i + k), q + 9*(i + k));
+                codes[k] = delta_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_inverse_kinematics(model, X + 3*i, q + 9*i);
+        const int code = delta_inverse_kinematics(model, X + NQ*i, q + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5296,16 +5312,16 @@ size_t delta_joint_rates_batch(const delta_model *model, size_t n, const delta_r
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_lanes(model, X + 3*i, V + 3*i, rates + 9*i, codes);
+        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_joint_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 9*(i + k));
+                codes[k] = delta_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_joint_rates(model, X + 3*i, V + 3*i, rates + 9*i);
+        const int code = delta_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5325,17 +5341,18 @@ size_t delta_joint_accelerations_batch(const delta_model *model, size_t n, const
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 9*i, codes);
+        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_joint_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
-                    accelerations + 9*(i + k));
+                codes[k] = delta_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    accelerations + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_joint_accelerations(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 9*i);
+        const int code = delta_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i, accelerations +
+            NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5355,17 +5372,17 @@ size_t delta_dynamics_batch(const delta_model *model, size_t n, const delta_real
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_lanes(model, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
+        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i + k), H +
-                    9*(i + k));
+                codes[k] = delta_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z + NV*(i +
+                    k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_dynamics(model, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i);
+        const int code = delta_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5385,19 +5402,19 @@ size_t delta_inverse_dynamics_batch(const delta_model *model, size_t n, const de
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_lanes(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau + 3*i,
-            codes);
+        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+            NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_inverse_dynamics(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k), wrench ?
-                    wrench + 3*(i + k) : NULL, tau + 3*(i + k));
+                codes[k] = delta_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k), wrench ?
+                    wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_inverse_dynamics(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i :
-            NULL, tau + 3*i);
+        const int code = delta_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
+            NW*i : NULL, tau + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5417,19 +5434,19 @@ size_t delta_forward_dynamics_batch(const delta_model *model, size_t n, const de
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_lanes(model, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A + 3*i,
-            codes);
+        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+            NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_forward_dynamics(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k), wrench ?
-                    wrench + 3*(i + k) : NULL, A + 3*(i + k));
+                codes[k] = delta_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), wrench
+                    ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_forward_dynamics(model, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i
-            : NULL, A + 3*i);
+        const int code = delta_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench +
+            NW*i : NULL, A + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5453,8 +5470,8 @@ size_t delta_complete_acceleration_batch(const delta_model *model, size_t n, con
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = delta_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench +
-            3*i : NULL, completed + 3*i);
+        const int code = delta_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
+            + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5473,7 +5490,7 @@ size_t delta_leg_reactions_batch(const delta_model *model, size_t n, const delta
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = delta_leg_reactions(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i :
+        const int code = delta_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i :
             NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
@@ -5493,7 +5510,7 @@ size_t delta_energy_batch(const delta_model *model, size_t n, const delta_real *
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = delta_energy(model, X + 3*i, V + 3*i, kinetic + 1*i, potential + 1*i);
+        const int code = delta_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5512,7 +5529,7 @@ size_t delta_condition_batch(const delta_model *model, size_t n, const delta_rea
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = delta_condition(model, X + 3*i, sigma + 3*i, legs + 3*i);
+        const int code = delta_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5531,7 +5548,7 @@ size_t delta_forward_kinematics_batch(const delta_model *model, size_t n, const 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = delta_forward_kinematics(model, q_actuated + 3*i, X0 + 3*i, X + 3*i);
+        const int code = delta_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5552,7 +5569,7 @@ size_t delta_dissipation_batch(const delta_model *model, size_t n, const delta_r
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = delta_dissipation(model, X + 3*i, V + 3*i, dissipation + 1*i);
+        const int code = delta_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5572,16 +5589,16 @@ size_t delta_momentum_batch(const delta_model *model, size_t n, const delta_real
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_lanes(model, X + 3*i, V + 3*i, momentum + 3*i, codes);
+        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_momentum(model, X + 3*(i + k), V + 3*(i + k), momentum + 3*(i + k));
+                codes[k] = delta_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_momentum(model, X + 3*i, V + 3*i, momentum + 3*i);
+        const int code = delta_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5600,16 +5617,16 @@ size_t delta_joint_margins_batch(const delta_model *model, size_t n, const delta
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_margins_lanes(model, X + 3*i, margins + 9*i, codes);
+        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_joint_margins(model, X + 3*(i + k), margins + 9*(i + k));
+                codes[k] = delta_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_joint_margins(model, X + 3*i, margins + 9*i);
+        const int code = delta_joint_margins(model, X + NQ*i, margins + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5628,16 +5645,16 @@ size_t delta_within_limits_batch(const delta_model *model, size_t n, const delta
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        within_limits_lanes(model, X + 3*i, within + 1*i, codes);
+        within_limits_lanes(model, X + NQ*i, within + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_within_limits(model, X + 3*(i + k), within + 1*(i + k));
+                codes[k] = delta_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_within_limits(model, X + 3*i, within + 1*i);
+        const int code = delta_within_limits(model, X + NQ*i, within + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5656,16 +5673,16 @@ size_t delta_actuator_positions_batch(const delta_model *model, size_t n, const 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_lanes(model, X + 3*i, q + 3*i, codes);
+        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_actuator_positions(model, X + 3*(i + k), q + 3*(i + k));
+                codes[k] = delta_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_actuator_positions(model, X + 3*i, q + 3*i);
+        const int code = delta_actuator_positions(model, X + NQ*i, q + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5685,16 +5702,16 @@ size_t delta_actuator_rates_batch(const delta_model *model, size_t n, const delt
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_lanes(model, X + 3*i, V + 3*i, rates + 3*i, codes);
+        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_actuator_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 3*(i + k));
+                codes[k] = delta_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_actuator_rates(model, X + 3*i, V + 3*i, rates + 3*i);
+        const int code = delta_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5714,18 +5731,18 @@ size_t delta_actuator_accelerations_batch(const delta_model *model, size_t n, co
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 3*i, codes);
+        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_actuator_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
-                    accelerations + 3*(i + k));
+                codes[k] = delta_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    accelerations + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_actuator_accelerations(model, X + 3*i, V + 3*i, A + 3*i, accelerations +
-            3*i);
+        const int code = delta_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i, accelerations +
+            NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5745,16 +5762,16 @@ size_t delta_power_batch(const delta_model *model, size_t n, const delta_real *X
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_lanes(model, X + 3*i, V + 3*i, tau + 3*i, power + 1*i, codes);
+        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = delta_power(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k), power + 1*(i + k));
+                codes[k] = delta_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = delta_power(model, X + 3*i, V + 3*i, tau + 3*i, power + 1*i);
+        const int code = delta_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5772,7 +5789,7 @@ size_t delta_retract_batch(size_t n, const delta_real *X, const delta_real *step
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = delta_retract(X + 3*i, step + 3*i, X_moved + 3*i);
+        const int code = delta_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5790,7 +5807,7 @@ size_t delta_difference_batch(size_t n, const delta_real *X0, const delta_real *
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = delta_difference(X0 + 3*i, X1 + 3*i, step + 3*i);
+        const int code = delta_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5809,7 +5826,7 @@ size_t delta_interpolate_batch(size_t n, const delta_real *X0, const delta_real 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = delta_interpolate(X0 + 3*i, X1 + 3*i, s + 1*i, X + 3*i);
+        const int code = delta_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -86,7 +86,7 @@ _SHAPES = {  # of the arrays that functions give
     "qd": (9,),
     "qdd": (9,),
     "leg_force": (3, 3),
-    "drive": (3, 3),
+    "actuator": (3, 3),
     "potential": (1,),
     "lengths": (2,),
     "pivots": (3,),
@@ -118,7 +118,7 @@ _leg_force_rus = (
     [1, 4, 7],
     [2, 5, 8],
 )
-_drive_rus = (
+_actuator_rus = (
     [0, 3, 6],
     [1, 4, 7],
     [2, 5, 8],
@@ -572,7 +572,7 @@ def _prepare(p):
     rus_mu_1_t_2 = (
     gravity_x*rus_base_frame_xy + gravity_y*rus_base_frame_yy + gravity_z*rus_base_frame_zy
     )
-    # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
     inv_rus_rho2_1_t = 1.0/rus_rho2_1_t
     inv_rus_size_t_3 = 1.0/rus_size_t_3
     inv_rus_size = 1.0/rus_size
@@ -809,50 +809,41 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
+_BLOCK = 4096  # states
 _SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
-    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    """Prepared values of a function, and for each loop over legs (leg, its values): floats."""
     if name not in p._cache:
         shared, loops = p._prepared()[name]
-        rows, columns = [], []
+        rows = []
         for count, values in loops:
-            table = [np.broadcast_to(v, count) for v in values]
-            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
-            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
-        p._cache[name] = tuple(map(float, shared)), rows, columns
+            table = [np.broadcast_to(v, count).tolist() for v in values]
+            rows.append([(leg, tuple(v[leg] for v in table)) for leg in range(count)])
+        p._cache[name] = tuple(map(float, shared)), rows
     return p._cache[name]
-
-
-def _sqrt(x):
-    return x**0.5 if x >= 0.0 else np.nan
 
 
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
-    sqrt = staticmethod(_sqrt)
+    sqrt = staticmethod(math.sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda leg, good: good)
 
-    def __init__(self, p, states):
+    def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)[:2]
+        return _constants(self.p, name)
 
     def zeros(self, name):
         return [0.0] * math.prod(_SHAPES[name])
-
-    def added(self, sums, leg, terms):
-        """Sums over the legs so far."""
-        return [a + b for a, b in zip(sums, terms)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -864,7 +855,7 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, ValueError):
             ok = False
         if ok and all(all(map(math.isfinite, array)) for array in arrays):
             return arrays
@@ -872,54 +863,66 @@ class _Floats:
 
 
 class _Arrays:
-    """Functions of many states at once: arrays (states,), and (legs, states)."""
+    """Functions of many states at once, in arrays (states,).
+
+    Attributes:
+        kept: replays, by their place among those of a block, for other blocks of the same size;
+            None where there are too few states for it to pay to record.
+    """
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
-    def __init__(self, p, states):
-        self.p, self.states = p, states
+    def __init__(self, p, states, kept=None):
+        self.p, self.states, self.kept, self.done = p, states, kept, 0
 
     def constants(self, name):
-        """Shared values, and (all legs, their values) once for each loop."""
-        shared, _, columns = _constants(self.p, name)
-        return shared, columns
+        """Shared values, and (leg, its values) for every leg of each loop.
+
+        As arrays without dimensions: beside arrays they are faster than floats.
+        """
+        if (name, "arrays") not in self.p._cache:
+            shared, loops = _constants(self.p, name)
+            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
+            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
+        return self.p._cache[name, "arrays"]
 
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, legs, good):
-        """Whether it holds for all legs."""
-        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
-
-    def added(self, sums, legs, terms):
-        """Sums over the legs, all at once."""
-        shape = (legs.stop, self.states)
-        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+    def computed(self, function, names, vectors):
+        """Flags and arrays (*shape, states) of a function."""
+        if self.kept is None:
+            flags, arrays = function(self, *vectors)
+        else:
+            if self.done not in self.kept:
+                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+            flags, arrays = self.kept[self.done].run(vectors)
+            self.done += 1
+        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = function(self, *vectors)
-        for a in arrays:
-            ok = ok & np.isfinite(a).all(axis=0)
+        ok, arrays = self.computed(function, names, vectors)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
-                a[:, ~ok] = np.nan
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+                a[..., ~ok] = np.nan
+        return arrays
 
 
 class _Judged(_Arrays):
     """The same, and why a state is impossible."""
 
-    def __init__(self, p, states):
-        super().__init__(p, states)
+    def __init__(self, p, states, kept=None):
+        super().__init__(p, states, kept)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = function(self, *vectors)
+        (valid, reached, clear), arrays = self.computed(function, names, vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            self.failed[code] |= np.logical_not(good)
+        return arrays
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -931,9 +934,9 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _mode(p, states):
+def _mode(p, states, kept=None):
     """The faster way for so many states."""
-    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
@@ -966,26 +969,27 @@ def _one(steps, p, given, shapes, read, unbounded):
 
 
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
-    """Results at many states, block by block."""
+    """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
+    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
-    if count > _BLOCK:
+    if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
         # of intermediate arrays from block to block instead of giving its pages back.
         np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
-        for first in range(0, max(count, 1), _BLOCK):
-            block = slice(first, min(first + _BLOCK, count))
+        for stop in (*range(size, count, max(size, 1)), count):
+            block = slice(stop - size, stop)
             states = [_states_last(v[block]) for v in flat]
-            m, good = mode(p, block.stop - first), possible[block]
+            m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
-            _all_finite(compress(states, read), good)
+            good &= _finite(compress(states, read), size)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
+            good &= _finite([np.minimum(a, 0.0) for a in found] if unbounded else found, size)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1002,10 +1006,194 @@ def _states_last(a):
     return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
 
 
-def _all_finite(arrays, good):
-    """Clear the flags of states in which some entry is not finite."""
-    for a in arrays:
-        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+def _finite(arrays, states):
+    """In which states all entries of arrays (*shape, states) are finite."""
+    flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
+    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    if not np.all(good):  # or the sum is too large
+        good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
+    return good
+
+
+def _least(x, y, out):
+    return np.minimum(x, y, out=out)
+
+
+def _both(operation):
+    """An operation of recorded values, and the same with its operands the other way round."""
+    return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
+
+
+class _Recorded:
+    """A value of a function that runs to be recorded."""
+
+    def __init__(self, record, number):
+        self.record, self.number = record, number
+
+    __add__, __radd__ = _both(np.add)
+    __sub__, __rsub__ = _both(np.subtract)
+    __mul__, __rmul__ = _both(np.multiply)
+    __truediv__, __rtruediv__ = _both(np.divide)
+    __and__, __rand__ = _both(np.logical_and)
+    __gt__, __lt__ = _both(np.greater)
+    __ge__, __le__ = _both(np.greater_equal)
+
+    def __neg__(self):
+        return self.record.made(np.negative, self)
+
+    def __abs__(self):
+        return self.record.made(np.absolute, self)
+
+
+class _Record:
+    """The operations of a function, recorded by running it, and where their results stand.
+
+    Results share arrays: what is read for the last time makes room for the next, so that a few
+    arrays do, which stay in the processor's cache.
+
+    Attributes:
+        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
+        steps: (operation, numbers of its operands and of its result).
+        slots: number of a result -> (kind of array or "out", place).
+        counts: how many arrays there are of every kind.
+    """
+
+    def __init__(self, p, function, sizes):
+        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
+        self.constant, self.literals = [], {}
+        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
+        flags, arrays = function(self, *self.inputs)
+        self.is_judged = isinstance(flags, tuple)
+        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes = [len(array) for array in arrays]
+        for place, value in enumerate(v for array in arrays for v in array):
+            self.store(self.number(value), place)
+        self.counts = self.share()
+
+    # ---- the mode in which the function runs ----
+
+    def sqrt(self, x):
+        return self.made(np.sqrt, x)
+
+    def sin(self, x):
+        return self.made(np.sin, x)
+
+    def cos(self, x):
+        return self.made(np.cos, x)
+
+    def atan2(self, y, x):
+        return self.made(np.arctan2, y, x)
+
+    def least(self, x, y):
+        return self.made(_least, x, y)
+
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        self.name, (shared, loops) = name, _constants(self.p, name)
+        shared = self.named(shared)
+        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+
+    # ---- what is recorded ----
+
+    def named(self, values):
+        """Values for constants."""
+        found = [self.value("one") for _ in values]
+        self.constant += [v.number for v in found]
+        return found
+
+    def value(self, kind):
+        self.kinds.append(kind)
+        return _Recorded(self, len(self.kinds) - 1)
+
+    def number(self, value):
+        """Number of a value, which may be a literal."""
+        if isinstance(value, _Recorded):
+            return value.number
+        if value not in self.literals:
+            self.literals[value] = self.value("one").number
+        return self.literals[value]
+
+    def made(self, operation, *operands):
+        """The result of an operation."""
+        numbers = [self.number(operand) for operand in operands]
+        if all(self.kinds[n] == "one" for n in numbers):
+            kind = "one"
+        else:
+            kind = "flag" if operation in _OF_FLAGS else "state"
+        result = self.value(kind)
+        self.steps.append((operation, [*numbers, result.number]))
+        return result
+
+    def store(self, number, place):
+        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
+        if self.kinds[number] != "state" or number in self.slots:
+            copy = self.value("state").number
+            self.steps.append((np.positive, [number, copy]))
+            number = copy
+        self.slots[number] = "out", place
+
+    def share(self):
+        """Give results their places; how many there are of each kind."""
+        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
+        last.update(dict.fromkeys(self.flags, len(self.steps)))
+        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
+        for k, (_, (*operands, result)) in enumerate(self.steps):
+            for n in dict.fromkeys(operands):
+                kind, place = self.slots.get(n, ("given", 0))
+                if last[n] == k and kind in free:
+                    free[kind].append(place)
+            if result not in self.slots:
+                kind = self.kinds[result]
+                if not free[kind]:
+                    free[kind].append(counts[kind])
+                    counts[kind] += 1
+                self.slots[result] = kind, free[kind].pop()
+        return counts
+
+
+_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_RECORDS = {}  # by function
+
+
+class _Replay:
+    """A record on arrays of so many states, which are made once."""
+
+    def __init__(self, p, function, sizes, states):
+        if function not in _RECORDS:
+            _RECORDS[function] = _Record(p, function, sizes)
+        r = _RECORDS[function]
+        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
+        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
+        made["out"] = _rows(sum(r.sizes), states)
+        self.inputs = [_rows(size, states) for size in sizes]
+        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        at = {number: np.array(value) for value, number in r.literals.items()}
+        for values, given in zip(r.inputs, self.inputs):
+            at |= {v.number: row for v, row in zip(values, given)}
+        if r.name is not None:
+            shared, loops = _constants(p, r.name)
+            values = sum((k for legs in loops for _, k in legs), shared)
+            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
+        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
+        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
+        flags = [at[n] for n in r.flags]
+        self.flags = flags if r.is_judged else flags[0]
+
+    def run(self, vectors):
+        """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
+        for rows, vector in zip(self.inputs, vectors):
+            rows[:] = vector
+        for operation, operands in self.steps:
+            operation(*operands)
+        return self.flags, self.arrays
+
+
+def _rows(count, states, kind=float):
+    """Rows of so many states, a cache line apart from each other."""
+    return np.empty((count, states + 8), dtype=kind)[:, :states]
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1232,7 +1420,10 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    sums = [0.0] * 9
+    (
+    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz, Z_t_rus_x, Z_t_rus_y,
+        Z_t_rus_z,
+    ) = [0.0] * 9
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
@@ -1487,7 +1678,7 @@ def _run_dynamics(m, X, V):
         rus_d_Gamma_2_t - inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz -
             rus_d_Gamma_2_t_4 - rus_d_Gamma_2_t_5)
         )
-        # (rus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
@@ -1582,21 +1773,25 @@ def _run_dynamics(m, X, V):
             axis_z_rus_axes3_z*rus_c_o_in_axes3_z
         )
         ok = (
-        ok & m.every(leg, (abs(rus_J_3_t_12) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) &
-            (rus_J_3_t_13 >= 0.0) & (abs(rus_J_3_t_18) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
-            (abs(rus_r_1_t) > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
+        ok & (abs(rus_J_3_t_12) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_13 >= 0.0)
+            & (abs(rus_J_3_t_18) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
-        sums = m.added(sums, leg, (
-        rus_Q_xx, rus_Q_xy, rus_Q_xz, rus_Q_yy, rus_Q_yz, rus_Q_zz, rus_U_x, rus_U_y, rus_U_z,
-        ))
+        # (M_tt) translational block of M
+        M_tt_rus_xx += rus_Q_xx
+        M_tt_xy += rus_Q_xy
+        M_tt_xz += rus_Q_xz
+        M_tt_rus_yy += rus_Q_yy
+        M_tt_yz += rus_Q_yz
+        M_tt_rus_zz += rus_Q_zz
+        # (Z_t) translational part of Z
+        Z_t_rus_x += rus_U_x
+        Z_t_rus_y += rus_U_y
+        Z_t_rus_z += rus_U_z
         # (rus-w_1) reciprocal vector 1
         out_H[_H_rus[0][leg]] = -rus_w_1_t_7
         out_H[_H_rus[1][leg]] = -rus_w_1_t_8
         out_H[_H_rus[2][leg]] = -rus_w_1_t_9
-    (
-    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz, Z_t_rus_x, Z_t_rus_y,
-        Z_t_rus_z,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rus_xx + m_star
     M_tt_yy = M_tt_rus_yy + m_star
@@ -1636,7 +1831,7 @@ def _run_M(m, X):
     t_z = X_2
     ok = True
     out_M = m.zeros("M")
-    sums = [0.0] * 6
+    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz = [0.0] * 6
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
@@ -1842,14 +2037,17 @@ def _run_M(m, X):
         rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16
         rus_Q_zz = -2.0*rus_Q_t_19 - rus_d_c_in_axes3_xx
         ok = (
-        ok & m.every(leg, (abs(rus_J_3_t_12) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) &
-            (rus_J_3_t_13 >= 0.0) & (abs(rus_J_3_t_18) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
-            (abs(rus_r_1_t) > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
+        ok & (abs(rus_J_3_t_12) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_13 >= 0.0)
+            & (abs(rus_J_3_t_18) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
-        sums = m.added(sums, leg, (
-        rus_Q_xx, rus_Q_xy, rus_Q_xz, rus_Q_yy, rus_Q_yz, rus_Q_zz,
-        ))
-    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz = sums
+        # (M_tt) translational block of M
+        M_tt_rus_xx += rus_Q_xx
+        M_tt_xy += rus_Q_xy
+        M_tt_xz += rus_Q_xz
+        M_tt_rus_yy += rus_Q_yy
+        M_tt_yz += rus_Q_yz
+        M_tt_rus_zz += rus_Q_zz
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rus_xx + m_star
     M_tt_yy = M_tt_rus_yy + m_star
@@ -1888,7 +2086,7 @@ def _run_Z(m, X, V):
     t_dot_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    sums = [0.0] * 3
+    Z_t_rus_x, Z_t_rus_y, Z_t_rus_z = [0.0] * 3
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
@@ -2104,7 +2302,7 @@ def _run_Z(m, X, V):
         )
         # (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
-        # (rus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
@@ -2137,14 +2335,14 @@ def _run_Z(m, X, V):
             axis_z_rus_axes3_z*rus_c_o_in_axes3_z
         )
         ok = (
-        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
-            > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
-        sums = m.added(sums, leg, (
-        rus_U_x, rus_U_y, rus_U_z,
-        ))
-    Z_t_rus_x, Z_t_rus_y, Z_t_rus_z = sums
+        # (Z_t) translational part of Z
+        Z_t_rus_x += rus_U_x
+        Z_t_rus_y += rus_U_y
+        Z_t_rus_z += rus_U_z
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_rus_x
     Z_t_y = Z_p_y + Z_t_rus_y
@@ -2266,9 +2464,9 @@ def _run_H(m, X):
             axis_y_rus_axes3_y*axis_z_rus_axes3_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
-            > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size))
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         # (rus-w_1) reciprocal vector 1
         out_H[_H_rus[0][leg]] = -rus_w_1_t_7
@@ -2314,7 +2512,7 @@ def _run_required(m, X, V, A):
     f_p_x = a_t_x*m_star
     f_p_y = a_t_y*m_star
     f_p_z = a_t_z*m_star
-    sums = [0.0] * 3
+    R_t_t, R_t_t_2, R_t_t_3 = [0.0] * 3
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
@@ -2547,7 +2745,7 @@ def _run_required(m, X, V, A):
         )
         # (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z
-        # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-c) leg force on the platform without actuation and without the mass at the connection point
@@ -2579,18 +2777,18 @@ def _run_required(m, X, V, A):
             axis_z_rus_axes3_z*rus_c_in_axes3_z
         )
         ok = (
-        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
-            > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
-        sums = m.added(sums, leg, (
-        rus_c_x, rus_c_y, rus_c_z,
-        ))
+        # (R_t) force that actuators and external wrench must give
+        R_t_t += rus_c_x
+        R_t_t_2 += rus_c_y
+        R_t_t_3 += rus_c_z
         # (rus-w_1) reciprocal vector 1
         out_H[_H_rus[0][leg]] = -rus_w_1_t_7
         out_H[_H_rus[1][leg]] = -rus_w_1_t_8
         out_H[_H_rus[2][leg]] = -rus_w_1_t_9
-    R_t_t, R_t_t_2, R_t_t_3 = sums
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t
     R_t_y = f_p_y - R_t_t_2
@@ -2678,8 +2876,8 @@ def _run_inverse_kinematics(m, X):
             inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2)
         )
         ok = (
-        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3))
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
         )
         # (rus-q_1) displacement of joint 1
         out_q[_q_rus[0][leg]] = rus_q_1
@@ -2821,9 +3019,9 @@ def _run_joint_rates(m, X, V):
             axis_y_rus_axes3_z*t_dot_z + rus_qd_1*rus_r_1_in_axes3_z*rus_s_3)
         )
         ok = (
-        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
-            > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size))
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         # (rus-qd_1) rate of joint 1
         out_qd[_qd_rus[0][leg]] = rus_qd_1
@@ -3030,9 +3228,9 @@ def _run_joint_accelerations(m, X, V, A):
         # (rus-qdd_3) acceleration of joint 3
         rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y - rus_qdd_1_t*rus_v_1_in_axes3_y)
         ok = (
-        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
-            > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (rus-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rus[0][leg]] = -rus_qdd_1_t
@@ -3071,7 +3269,7 @@ def _run_legs(m, X, V, A):
     t_ddot_z = A_2
     ok = True
     out_leg_force = m.zeros("leg_force")
-    out_drive = m.zeros("drive")
+    out_actuator = m.zeros("actuator")
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
@@ -3305,7 +3503,7 @@ def _run_legs(m, X, V, A):
         )
         # (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z
-        # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z
         rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-c) leg force on the platform without actuation and without the mass at the connection point
@@ -3341,19 +3539,19 @@ def _run_legs(m, X, V, A):
             axis_z_rus_axes3_z*rus_c_true_in_axes3_z
         )
         ok = (
-        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
-            > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (rus-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rus[0][leg]] = rus_c_true_x
         out_leg_force[_leg_force_rus[1][leg]] = rus_c_true_y
         out_leg_force[_leg_force_rus[2][leg]] = rus_c_true_z
         # (rus-w_1) reciprocal vector 1
-        out_drive[_drive_rus[0][leg]] = -rus_w_1_t_7
-        out_drive[_drive_rus[1][leg]] = -rus_w_1_t_8
-        out_drive[_drive_rus[2][leg]] = -rus_w_1_t_9
-    return ok, (out_leg_force, out_drive,)
+        out_actuator[_actuator_rus[0][leg]] = -rus_w_1_t_7
+        out_actuator[_actuator_rus[1][leg]] = -rus_w_1_t_8
+        out_actuator[_actuator_rus[2][leg]] = -rus_w_1_t_9
+    return ok, (out_leg_force, out_actuator,)
 
 
 # potential: 189 mul, 123 add, 6 div, 6 sqrt, 0 trig
@@ -3375,7 +3573,7 @@ def _run_potential(m, X):
     gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
         m_star*t_z)
     )
-    sums = [0.0] * 1
+    potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
@@ -3451,13 +3649,11 @@ def _run_potential(m, X):
             rus_potential_t*rus_s_1))
         )
         ok = (
-        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3))
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
         )
-        sums = m.added(sums, leg, (
-        rus_potential_t_5,
-        ))
-    potential_t_2, = sums
+        # (potential) potential energy
+        potential_t_2 += rus_potential_t_5
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy
@@ -3487,7 +3683,7 @@ def _run_condition(m, X):
     out_reach = m.zeros("reach")
     # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
-    sums = [0.0] * 1
+    spread_rus, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_rus_rho2_1_t, inv_rus_size, inv_rus_size_t, inv_rus_size_t_2, inv_rus_size_t_3,
@@ -3585,7 +3781,7 @@ def _run_condition(m, X):
         inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x)
         )
-        # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_pivot_size = abs(rus_rho2_1)
         rus_pivot_size_2 = abs(rus_rho2_2)
         rus_pivot_size_3 = abs(rus_r_1_t)
@@ -3602,22 +3798,20 @@ def _run_condition(m, X):
         rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 + rus_spread_t_3*rus_spread_t_3
         )
         clear = (
-        clear & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size))
+        clear & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (abs(rus_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) > _TOLERANCE * rus_size) &
+            (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
-        reached = reached & m.every(leg, (rus_disc_1 >= 0.0))
-        sums = m.added(sums, leg, (
-        rus_spread_t_4,
-        ))
+        reached = reached & (rus_disc_1 >= 0.0)
+        # (spread) rms distance of the platform points from their centroid
+        spread_rus += rus_spread_t_4
         # (rus-w_1) reciprocal vector 1
         out_H[_H_rus[0][leg]] = -rus_w_1_t_7
         out_H[_H_rus[1][leg]] = -rus_w_1_t_8
         out_H[_H_rus[2][leg]] = -rus_w_1_t_9
-        # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rus[0][leg]] = rus_least_pivots
         out_reach[_reach_rus[0][leg]] = rus_disc_1
-    spread_rus, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_rus)*spread_t
     # (spread) rms distance of the platform points from their centroid
@@ -3667,18 +3861,18 @@ def _steps_dynamics(m, X, V):
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    tau = _solve(H, subtract_2)
+    subtract_1 = required - extend_1
+    tau = _solve(H, subtract_1)
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H, tau)
-    extend_2 = wrench
-    add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z
-    A = _solve(M, subtract_4)
+    extend_1 = wrench
+    add_1 = times_1 + extend_1
+    subtract_1 = add_1 - Z
+    A = _solve(M, subtract_1)
     return (A,)
 
 
@@ -3690,10 +3884,10 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    solve_3 = _solve(H, subtract_2)
-    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    forces = _with_forces(leg_force, solve_3, drive, [0, 1, 2])
+    subtract_1 = required - extend_1
+    solve_1 = _solve(H, subtract_1)
+    leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
+    forces = _with_forces(leg_force, solve_1, actuator, [0, 1, 2])
     return (forces,)
 
 
@@ -3720,8 +3914,8 @@ def _steps_condition(m, X, length):
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q[[0, 3, 6]]
-    subtract_2 = q_actuated - take_1
-    gap = _wrapped(subtract_2, [0, 1, 2])
+    subtract_1 = q_actuated - take_1
+    gap = _wrapped(subtract_1, [0, 1, 2])
     return (gap,)
 
 
@@ -3797,8 +3991,8 @@ def _steps_difference(m, X0, X1):
 
 def _steps_interpolate(m, X0, X1, s):
     subtract_1 = X1 - X0
-    scale_2 = subtract_1 * s
-    X = X0 + scale_2
+    scale_1 = subtract_1 * s
+    X = X0 + scale_1
     return (X,)
 
 

@@ -54,6 +54,19 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+#define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
+
+/* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
+#define NQ ((size_t)FIVEBAR_OFFSET_NQ)
+#define NV ((size_t)FIVEBAR_OFFSET_NV)
+#define NU ((size_t)FIVEBAR_OFFSET_NU)
+#define NC ((size_t)FIVEBAR_OFFSET_NC)
+#define NW ((size_t)FIVEBAR_OFFSET_NW)
+#define NJ ((size_t)FIVEBAR_OFFSET_NJ)
+#define NL ((size_t)2)
+#define LEGS_OF_crank ((size_t)1)
+#define LEGS_OF_rrr ((size_t)1)
+
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
@@ -114,6 +127,12 @@ INLINE void clear(real *x, size_t n)
     for (size_t i = 0; i < n; ++i) {
         x[i] = 0;
     }
+}
+
+/* What a leg adds to a sum, or gives alone. */
+INLINE void gather(real *sum, int add, real term)
+{
+    *sum = add ? *sum + term : term;
 }
 
 INLINE int is_finite(real x)
@@ -444,47 +463,47 @@ static int acceptable(const fivebar_offset_params *p)
     ok &= all_zero(&p->platform_centre_of_mass[0] + 2, 1, 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_planar_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->crank_base_point[0][0], 3);
-    ok &= all_zero(&p->crank_base_point[0][0] + 2, 1, 3);
-    ok &= all_within(&p->crank_base_frame[0][0][0], 9);
-    ok &= all_rotations(&p->crank_base_frame[0][0][0], 1);
-    ok &= all_about_z(&p->crank_base_frame[0][0][0], 1);
-    ok &= all_within(&p->crank_platform_point[0][0], 3);
-    ok &= all_zero(&p->crank_platform_point[0][0] + 2, 1, 3);
-    ok &= all_within(&p->crank_platform_joint_offset[0][0], 3);
-    ok &= all_zero(&p->crank_platform_joint_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->crank_platform_joint_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->crank_link1_mass[0], 1);
-    ok &= none_negative(&p->crank_link1_mass[0], 1);
-    ok &= all_within(&p->crank_link1_centre_of_mass[0][0], 3);
-    ok &= all_zero(&p->crank_link1_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_within(&p->crank_link1_inertia[0][0][0], 9);
-    ok &= all_planar_inertias(&p->crank_link1_inertia[0][0][0], 1);
-    ok &= all_within(&p->rrr_base_point[0][0], 3);
-    ok &= all_zero(&p->rrr_base_point[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr_base_frame[0][0][0], 9);
-    ok &= all_rotations(&p->rrr_base_frame[0][0][0], 1);
-    ok &= all_about_z(&p->rrr_base_frame[0][0][0], 1);
-    ok &= all_within(&p->rrr_platform_point[0][0], 3);
-    ok &= all_zero(&p->rrr_platform_point[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr_joint2_offset[0][0], 3);
-    ok &= all_zero(&p->rrr_joint2_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->rrr_joint2_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr_platform_joint_offset[0][0], 3);
-    ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr_link1_mass[0], 1);
-    ok &= none_negative(&p->rrr_link1_mass[0], 1);
-    ok &= all_within(&p->rrr_link1_centre_of_mass[0][0], 3);
-    ok &= all_zero(&p->rrr_link1_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr_link1_inertia[0][0][0], 9);
-    ok &= all_planar_inertias(&p->rrr_link1_inertia[0][0][0], 1);
-    ok &= all_within(&p->rrr_link2_mass[0], 1);
-    ok &= none_negative(&p->rrr_link2_mass[0], 1);
-    ok &= all_within(&p->rrr_link2_centre_of_mass[0][0], 3);
-    ok &= all_zero(&p->rrr_link2_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrr_link2_inertia[0][0][0], 9);
-    ok &= all_planar_inertias(&p->rrr_link2_inertia[0][0][0], 1);
+    ok &= all_within(&p->crank_base_point[0][0], 3*LEGS_OF_crank);
+    ok &= all_zero(&p->crank_base_point[0][0] + 2, LEGS_OF_crank, 3);
+    ok &= all_within(&p->crank_base_frame[0][0][0], 9*LEGS_OF_crank);
+    ok &= all_rotations(&p->crank_base_frame[0][0][0], LEGS_OF_crank);
+    ok &= all_about_z(&p->crank_base_frame[0][0][0], LEGS_OF_crank);
+    ok &= all_within(&p->crank_platform_point[0][0], 3*LEGS_OF_crank);
+    ok &= all_zero(&p->crank_platform_point[0][0] + 2, LEGS_OF_crank, 3);
+    ok &= all_within(&p->crank_platform_joint_offset[0][0], 3*LEGS_OF_crank);
+    ok &= all_zero(&p->crank_platform_joint_offset[0][0] + 1, LEGS_OF_crank, 3);
+    ok &= all_zero(&p->crank_platform_joint_offset[0][0] + 2, LEGS_OF_crank, 3);
+    ok &= all_within(&p->crank_link1_mass[0], LEGS_OF_crank);
+    ok &= none_negative(&p->crank_link1_mass[0], LEGS_OF_crank);
+    ok &= all_within(&p->crank_link1_centre_of_mass[0][0], 3*LEGS_OF_crank);
+    ok &= all_zero(&p->crank_link1_centre_of_mass[0][0] + 2, LEGS_OF_crank, 3);
+    ok &= all_within(&p->crank_link1_inertia[0][0][0], 9*LEGS_OF_crank);
+    ok &= all_planar_inertias(&p->crank_link1_inertia[0][0][0], LEGS_OF_crank);
+    ok &= all_within(&p->rrr_base_point[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_base_point[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_base_frame[0][0][0], 9*LEGS_OF_rrr);
+    ok &= all_rotations(&p->rrr_base_frame[0][0][0], LEGS_OF_rrr);
+    ok &= all_about_z(&p->rrr_base_frame[0][0][0], LEGS_OF_rrr);
+    ok &= all_within(&p->rrr_platform_point[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_platform_point[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_joint2_offset[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_joint2_offset[0][0] + 1, LEGS_OF_rrr, 3);
+    ok &= all_zero(&p->rrr_joint2_offset[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_platform_joint_offset[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 1, LEGS_OF_rrr, 3);
+    ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_link1_mass[0], LEGS_OF_rrr);
+    ok &= none_negative(&p->rrr_link1_mass[0], LEGS_OF_rrr);
+    ok &= all_within(&p->rrr_link1_centre_of_mass[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_link1_centre_of_mass[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_link1_inertia[0][0][0], 9*LEGS_OF_rrr);
+    ok &= all_planar_inertias(&p->rrr_link1_inertia[0][0][0], LEGS_OF_rrr);
+    ok &= all_within(&p->rrr_link2_mass[0], LEGS_OF_rrr);
+    ok &= none_negative(&p->rrr_link2_mass[0], LEGS_OF_rrr);
+    ok &= all_within(&p->rrr_link2_centre_of_mass[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_link2_centre_of_mass[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_link2_inertia[0][0][0], 9*LEGS_OF_rrr);
+    ok &= all_planar_inertias(&p->rrr_link2_inertia[0][0][0], LEGS_OF_rrr);
     return ok;
 }
 
@@ -497,11 +516,11 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
     real b_c_crank_in_platform_x = 0;
     real b_c_crank_in_platform_y = 0;
     real legs_size_crank = 0;
-    real m_star_rrr = 0;
-    real h_star_rrr_in_platform_x = 0;
-    real h_star_rrr_in_platform_y = 0;
-    real J_star_rrr_in_platform_xx = 0;
-    real J_star_rrr_in_platform_zz = 0;
+    real m_star_of_legs = 0;
+    real h_star_in_platform_x_of_legs = 0;
+    real h_star_in_platform_y_of_legs = 0;
+    real J_star_in_platform_xx_of_legs = 0;
+    real J_star_t_5_of_legs = 0;
     real b_c_rrr_in_platform_x = 0;
     real b_c_rrr_in_platform_y = 0;
     real legs_size_rrr = 0;
@@ -521,7 +540,7 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
     const real J_star_t_4 = J_star_t_2*platform_mass;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         const size_t own = leg;
         const real crank_base_point_x = params->crank_base_point[own][0];
         const real crank_base_point_y = params->crank_base_point[own][1];
@@ -550,7 +569,7 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
         const real crank_root_1_t = crank_size*crank_size*crank_size_t_2;
         const real inv_crank_root_1_t = 1/crank_root_1_t;
-        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        /* (crank-n_c) direction of the constraint force */
         const real crank_n_c_in_axes1_x = -crank_platform_joint_offset_x/(root(crank_size_t));
         /* (crank-w_1) reciprocal vector 1 */
         const real crank_w_1_in_axes1_y = 1/crank_platform_joint_offset_x;
@@ -558,7 +577,7 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         const real crank_mu_1_t = crank_base_frame_xx*gravity_x + crank_base_frame_yx*gravity_y;
         const real crank_mu_1_t_2 = crank_base_frame_xy*gravity_x + crank_base_frame_yy*gravity_y;
         /* (crank-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real crank_d_G_in_axes1_yy =
             crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*crank_w_1_in_axes1_y;
         /* (potential) potential energy */
@@ -590,7 +609,7 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         b_c_crank_in_platform_y += crank_platform_point_y;
         legs_size_crank += crank_size_t_2;
     }
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         const size_t own = leg;
         const real rrr_base_point_x = params->rrr_base_point[own][0];
         const real rrr_base_point_y = params->rrr_base_point[own][1];
@@ -660,7 +679,7 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         const real rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
         const real rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real inv_rrr_rho2_1_t = 1/rrr_rho2_1_t;
         const real inv_rrr_size = 1/rrr_size;
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
@@ -717,23 +736,23 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
         model->rrr_size[leg] = rrr_size;
         model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
-        m_star_rrr += rrr_link2_mass;
-        h_star_rrr_in_platform_x += rrr_h_star_t;
-        h_star_rrr_in_platform_y += rrr_h_star_t_2;
-        J_star_rrr_in_platform_xx += rrr_J_star_t_3;
-        J_star_rrr_in_platform_zz += rrr_J_star_t_4;
+        m_star_of_legs += rrr_link2_mass;
+        h_star_in_platform_x_of_legs += rrr_h_star_t;
+        h_star_in_platform_y_of_legs += rrr_h_star_t_2;
+        J_star_in_platform_xx_of_legs += rrr_J_star_t_3;
+        J_star_t_5_of_legs += rrr_J_star_t_4;
         b_c_rrr_in_platform_x += rrr_platform_point_x;
         b_c_rrr_in_platform_y += rrr_platform_point_y;
         legs_size_rrr += rrr_size_t_3;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_rrr + platform_mass;
+    const real m_star = m_star_of_legs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = h_star_rrr_in_platform_x + h_star_t;
-    const real h_star_in_platform_y = h_star_rrr_in_platform_y + h_star_t_2;
+    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
+    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xx = J_star_rrr_in_platform_xx + J_star_t_3;
-    const real J_star_t_5 = J_star_in_platform_xx - J_star_rrr_in_platform_zz - J_star_t_4 -
+    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
+    const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
     const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
     /* (Z_p) centripetal force and weight of the platform */
@@ -826,9 +845,10 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
 }
 
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
+#define PADDED(n) (((n) + 4)/4*4)
 INLINE size_t stride_of(size_t n, size_t w)
 {
-    return w == 1 ? (n + 4)/4*4 : n + 1;
+    return w == 1 ? PADDED(n) : n + 1;
 }
 
 INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
@@ -1189,14 +1209,14 @@ INLINE void rotation_of_angle(const real *a, real *x)
 /* X moved by a part of a small step. */
 static void moved(const real *X, const real *step, real part, real *to)
 {
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         to[i] = X[i] + part*step[i];
     }
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 201 mul, 141 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -1296,7 +1316,7 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t leg, size_t 
         const real crank_S_dot_y = crank_S_dot_t_2 + t_dot_y;
         const real crank_S_dot_in_axes1_y = axis_x_crank_axes1_x*crank_S_dot_y +
             axis_y_crank_axes1_x*crank_S_dot_x;
-        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        /* (crank-n_c) direction of the constraint force */
         const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
         const real crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x;
         const real crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x;
@@ -1325,7 +1345,7 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t leg, size_t 
             axis_x_crank_axes1_x*crank_u_1_t) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 -
             crank_mu_1_t*crank_s_1);
         /* (crank-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y;
         /* (crank-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real crank_d_G_in_axes1_yy = m->crank_d_G_in_axes1_yy[i];
@@ -1351,25 +1371,25 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t leg, size_t 
            */
         const real crank_gamma_c1 = crank_n_c_in_axes1_x*crank_rel_o_in_axes1_x;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + crank_Q_xx : crank_Q_xx;  /* M_tt_crank_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + crank_Q_xy : crank_Q_xy;  /* M_tt_crank_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + crank_Q_yy : crank_Q_yy;  /* M_tt_crank_yy */
+        gather(&terms[0*count + k], add, crank_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, crank_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, crank_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        terms[3*count + k] = add ? terms[3*count + k] + crank_M_ta_t : crank_M_ta_t;  /* M_ta_crank_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + crank_M_ta_t_2 : crank_M_ta_t_2;  /* M_ta_crank_yz */
+        gather(&terms[3*count + k], add, crank_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, crank_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        terms[5*count + k] = add ? terms[5*count + k] + crank_M_aa_t : crank_M_aa_t;  /* M_aa_crank_zz */
+        gather(&terms[5*count + k], add, crank_M_aa_t);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[6*count + k] = add ? terms[6*count + k] + crank_U_x : crank_U_x;  /* Z_t_crank_x */
-        terms[7*count + k] = add ? terms[7*count + k] + crank_U_y : crank_U_y;  /* Z_t_crank_y */
+        gather(&terms[6*count + k], add, crank_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[7*count + k], add, crank_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[8*count + k] = add ? terms[8*count + k] + crank_Z_a_t : crank_Z_a_t;  /* Z_a_crank_z */
+        gather(&terms[8*count + k], add, crank_Z_a_t);  /* Z_a_z_of_legs */
         /* (crank-w_1) reciprocal vector 1 */
         o[0*count + k] = crank_w_1_x;
         o[1*count + k] = crank_w_1_y;
         /* (crank-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = crank_H_a_1_z;
-        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        /* (crank-n_c) direction of the constraint force */
         o[3*count + k] = crank_n_c_x;
         o[4*count + k] = crank_n_c_y;
         /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
@@ -1388,13 +1408,13 @@ INLINE void dynamics_place_crank(size_t w, size_t count, const real *o, size_t f
     real *Hk, real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o[0*count + first + k];
-        H[(2)*w + k] = o[1*count + first + k];
-        H[(4)*w + k] = o[2*count + first + k];
-        Hk[(0)*w + k] = o[3*count + first + k];
-        Hk[(1)*w + k] = o[4*count + first + k];
-        Hk[(2)*w + k] = o[5*count + first + k];
-        constraint_bias[(0)*w + k] = o[6*count + first + k];
+        H[0*NU*w + k] = o[0*count + first + k];
+        H[NU*w + k] = o[1*count + first + k];
+        H[2*NU*w + k] = o[2*count + first + k];
+        Hk[0*NC*w + k] = o[3*count + first + k];
+        Hk[NC*w + k] = o[4*count + first + k];
+        Hk[2*NC*w + k] = o[5*count + first + k];
+        constraint_bias[0*w + k] = o[6*count + first + k];
         t->singular[k] += o[7*count + first + k];
         t->total[k] += o[8*count + first + k];
     }
@@ -1558,7 +1578,7 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_d_Gamma_1_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
             rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
@@ -1602,19 +1622,19 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
+        gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* M_ta_rrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* M_ta_rrr_yz */
+        gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* M_aa_rrr_zz */
+        gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[6*count + k] = add ? terms[6*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
+        gather(&terms[6*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[7*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[8*count + k] = add ? terms[8*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* Z_a_rrr_z */
+        gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
         o[0*count + k] = rrr_w_1_x;
         o[1*count + k] = rrr_w_1_y;
@@ -1633,9 +1653,9 @@ INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(1)*w + k] = o[0*count + first + k];
-        H[(3)*w + k] = o[1*count + first + k];
-        H[(5)*w + k] = o[2*count + first + k];
+        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[(NU + 1)*w + k] = o[1*count + first + k];
+        H[(2*NU + 1)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
@@ -1647,56 +1667,46 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_crank_xx = sums[0*w + k];
-        const real M_tt_rrr_xx = sums[9*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_crank_xx + M_tt_rrr_xx + m_star;
-        const real M_tt_crank_xy = sums[1*w + k];
-        const real M_tt_rrr_xy = sums[10*w + k];
-        const real M_tt_xy = M_tt_crank_xy + M_tt_rrr_xy;
-        const real M_tt_crank_yy = sums[2*w + k];
-        const real M_tt_rrr_yy = sums[11*w + k];
-        const real M_tt_yy = M_tt_crank_yy + M_tt_rrr_yy + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[2*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_crank_xz = sums[3*w + k];
-        const real M_ta_rrr_xz = sums[12*w + k];
+        const real M_ta_xz_of_legs = sums[3*w + k];
         const real h_star_y = s[8*w + k];
-        const real M_ta_xz = M_ta_crank_xz + M_ta_rrr_xz - h_star_y;
-        const real M_ta_crank_yz = sums[4*w + k];
-        const real M_ta_rrr_yz = sums[13*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yz_of_legs = sums[4*w + k];
         const real h_star_x = s[7*w + k];
-        const real M_ta_yz = M_ta_crank_yz + M_ta_rrr_yz + h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
-        const real M_aa_crank_zz = sums[5*w + k];
-        const real M_aa_rrr_zz = sums[14*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_crank_zz + M_aa_rrr_zz;
+        const real M_aa_zz_of_legs = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[9*w + k];
-        const real Z_t_crank_x = sums[6*w + k];
-        const real Z_t_rrr_x = sums[15*w + k];
-        const real Z_t_x = Z_p_x + Z_t_crank_x + Z_t_rrr_x;
+        const real Z_t_x_of_legs = sums[6*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[10*w + k];
-        const real Z_t_crank_y = sums[7*w + k];
-        const real Z_t_rrr_y = sums[16*w + k];
-        const real Z_t_y = Z_p_y + Z_t_crank_y + Z_t_rrr_y;
+        const real Z_t_y_of_legs = sums[7*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_crank_z = sums[8*w + k];
-        const real Z_a_rrr_z = sums[17*w + k];
+        const real Z_a_z_of_legs = sums[8*w + k];
         const real Z_q_z = s[11*w + k];
-        const real Z_a_z = Z_a_crank_z + Z_a_rrr_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = M_tt_xy;
-        M[3*w + k] = M_tt_xy;
-        M[4*w + k] = M_tt_yy;
+        M[0*NV*w + k] = M_tt_xx;
+        const real M_tt_xy = sums[1*w + k];
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
+        M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[6*w + k] = M_ta_xz;
-        M[5*w + k] = M_ta_yz;
-        M[7*w + k] = M_ta_yz;
+        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*NV*w + k] = M_ta_xz;
+        M[(NV + 2)*w + k] = M_ta_yz;
+        M[(2*NV + 1)*w + k] = M_ta_yz;
         /* (M_aa) rotational block of M */
-        M[8*w + k] = M_aa_zz;
+        M[(2*NV + 2)*w + k] = M_aa_zz;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -1710,22 +1720,26 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[12] = {0}, sums[18] = {0}, terms_crank[9*LEGS(1)] = {0}, o_crank[9*LEGS(1)] = {0},
-        terms_rrr[9*LEGS(1)] = {0}, o_rrr[6*LEGS(1)] = {0};
+    real s[12] = {0};
+    real sums[9] = {0};
+    real terms_crank[9*LEGS(LEGS_OF_crank)] = {0};
+    real o_crank[9*LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     dynamics_before(m, 1, X, V, s);
-    dynamics_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        dynamics_place_crank(1, LEGS(1), o_crank, leg, H, Hk, constraint_bias, t);
+    dynamics_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        dynamics_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, Hk, constraint_bias, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[n] = total(terms_crank + n*LEGS(1), 1);
+        sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        dynamics_place_rrr(1, LEGS(1), o_rrr, leg, H, t);
+    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[9 + n] = total(terms_rrr + n*LEGS(1), 1);
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -1733,22 +1747,24 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[12*LANES], sums[18*LANES], o_crank[9*LANES], o_rrr[6*LANES];
+    real s[12*LANES];
+    real sums[9*LANES];
+    real o_crank[9*LANES];
+    real o_rrr[6*LANES];
     dynamics_before(m, LANES, X, V, s);
     clear(sums, 9*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         dynamics_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
         dynamics_place_crank(LANES, LANES, o_crank, 0, H, Hk, constraint_bias, t);
     }
-    clear(sums + 9*LANES, 9*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 9*LANES, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
         dynamics_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
-/* ---- M: 106 mul, 80 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -1826,14 +1842,14 @@ INLINE void M_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, c
         /* (M_aa) rotational block of M */
         const real crank_M_aa_t = crank_M_ta_t_2*crank_q_x - crank_M_ta_t*crank_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + crank_Q_xx : crank_Q_xx;  /* M_tt_crank_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + crank_Q_xy : crank_Q_xy;  /* M_tt_crank_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + crank_Q_yy : crank_Q_yy;  /* M_tt_crank_yy */
+        gather(&terms[0*count + k], add, crank_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, crank_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, crank_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        terms[3*count + k] = add ? terms[3*count + k] + crank_M_ta_t : crank_M_ta_t;  /* M_ta_crank_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + crank_M_ta_t_2 : crank_M_ta_t_2;  /* M_ta_crank_yz */
+        gather(&terms[3*count + k], add, crank_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, crank_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        terms[5*count + k] = add ? terms[5*count + k] + crank_M_aa_t : crank_M_aa_t;  /* M_aa_crank_zz */
+        gather(&terms[5*count + k], add, crank_M_aa_t);  /* M_aa_zz_of_legs */
         const real crank_root_1_t = m->crank_root_1_t[i];
         o[0*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
@@ -1960,14 +1976,14 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (M_aa) rotational block of M */
         const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
+        gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* M_ta_rrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* M_ta_rrr_yz */
+        gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* M_aa_rrr_zz */
+        gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
@@ -1989,86 +2005,85 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_crank_xx = sums[0*w + k];
-        const real M_tt_rrr_xx = sums[6*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_crank_xx + M_tt_rrr_xx + m_star;
-        const real M_tt_crank_xy = sums[1*w + k];
-        const real M_tt_rrr_xy = sums[7*w + k];
-        const real M_tt_xy = M_tt_crank_xy + M_tt_rrr_xy;
-        const real M_tt_crank_yy = sums[2*w + k];
-        const real M_tt_rrr_yy = sums[8*w + k];
-        const real M_tt_yy = M_tt_crank_yy + M_tt_rrr_yy + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[2*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_crank_xz = sums[3*w + k];
-        const real M_ta_rrr_xz = sums[9*w + k];
+        const real M_ta_xz_of_legs = sums[3*w + k];
         const real h_star_y = s[5*w + k];
-        const real M_ta_xz = M_ta_crank_xz + M_ta_rrr_xz - h_star_y;
-        const real M_ta_crank_yz = sums[4*w + k];
-        const real M_ta_rrr_yz = sums[10*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yz_of_legs = sums[4*w + k];
         const real h_star_x = s[4*w + k];
-        const real M_ta_yz = M_ta_crank_yz + M_ta_rrr_yz + h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
-        const real M_aa_crank_zz = sums[5*w + k];
-        const real M_aa_rrr_zz = sums[11*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_crank_zz + M_aa_rrr_zz;
+        const real M_aa_zz_of_legs = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = M_tt_xy;
-        M[3*w + k] = M_tt_xy;
-        M[4*w + k] = M_tt_yy;
+        M[0*NV*w + k] = M_tt_xx;
+        const real M_tt_xy = sums[1*w + k];
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
+        M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[6*w + k] = M_ta_xz;
-        M[5*w + k] = M_ta_yz;
-        M[7*w + k] = M_ta_yz;
+        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*NV*w + k] = M_ta_xz;
+        M[(NV + 2)*w + k] = M_ta_yz;
+        M[(2*NV + 1)*w + k] = M_ta_yz;
         /* (M_aa) rotational block of M */
-        M[8*w + k] = M_aa_zz;
+        M[(2*NV + 2)*w + k] = M_aa_zz;
         t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
     }
 }
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6] = {0}, sums[12] = {0}, terms_crank[6*LEGS(1)] = {0}, o_crank[1*LEGS(1)] = {0},
-        terms_rrr[6*LEGS(1)] = {0}, o_rrr[2*LEGS(1)] = {0};
+    real s[6] = {0};
+    real sums[6] = {0};
+    real terms_crank[6*LEGS(LEGS_OF_crank)] = {0};
+    real o_crank[LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     M_before(m, 1, X, s);
-    M_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        M_place_crank(1, LEGS(1), o_crank, leg, t);
+    M_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        M_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_crank + n*LEGS(1), 1);
+        sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        M_place_rrr(1, LEGS(1), o_rrr, leg, t);
+    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[6 + n] = total(terms_rrr + n*LEGS(1), 1);
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     M_after(m, 1, s, sums, M, t);
 }
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6*LANES], sums[12*LANES], o_crank[1*LANES], o_rrr[2*LANES];
+    real s[6*LANES];
+    real sums[6*LANES];
+    real o_crank[LANES];
+    real o_rrr[2*LANES];
     M_before(m, LANES, X, s);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         M_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
         M_place_crank(LANES, LANES, o_crank, 0, t);
     }
-    clear(sums + 6*LANES, 6*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 6*LANES, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
         M_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
 }
 
-/* ---- Z: 144 mul, 89 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2171,7 +2186,7 @@ INLINE void Z_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, c
             - axis_y_crank_axes1_x*crank_q_x*omega_z*omega_z) -
             crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*crank_s_1);
         /* (crank-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y;
         /* (crank-U) velocity and gravity terms of the leg force */
         const real crank_U_x = axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
@@ -2179,10 +2194,10 @@ INLINE void Z_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, c
         /* (Z_a) rotational part of Z */
         const real crank_Z_a_t = crank_U_y*crank_q_x - crank_U_x*crank_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + crank_U_x : crank_U_x;  /* Z_t_crank_x */
-        terms[1*count + k] = add ? terms[1*count + k] + crank_U_y : crank_U_y;  /* Z_t_crank_y */
+        gather(&terms[0*count + k], add, crank_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, crank_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[2*count + k] = add ? terms[2*count + k] + crank_Z_a_t : crank_Z_a_t;  /* Z_a_crank_z */
+        gather(&terms[2*count + k], add, crank_Z_a_t);  /* Z_a_z_of_legs */
         const real crank_root_1_t = m->crank_root_1_t[i];
         o[0*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
@@ -2338,7 +2353,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
@@ -2355,10 +2370,10 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (Z_a) rotational part of Z */
         const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
+        gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* Z_a_rrr_z */
+        gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
@@ -2380,18 +2395,15 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[7*w + k];
-        const real Z_t_crank_x = sums[0*w + k];
-        const real Z_t_rrr_x = sums[3*w + k];
-        const real Z_t_x = Z_p_x + Z_t_crank_x + Z_t_rrr_x;
+        const real Z_t_x_of_legs = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[8*w + k];
-        const real Z_t_crank_y = sums[1*w + k];
-        const real Z_t_rrr_y = sums[4*w + k];
-        const real Z_t_y = Z_p_y + Z_t_crank_y + Z_t_rrr_y;
+        const real Z_t_y_of_legs = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_crank_z = sums[2*w + k];
-        const real Z_a_rrr_z = sums[5*w + k];
+        const real Z_a_z_of_legs = sums[2*w + k];
         const real Z_q_z = s[9*w + k];
-        const real Z_a_z = Z_a_crank_z + Z_a_rrr_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -2403,44 +2415,50 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10] = {0}, sums[6] = {0}, terms_crank[3*LEGS(1)] = {0}, o_crank[1*LEGS(1)] = {0},
-        terms_rrr[3*LEGS(1)] = {0}, o_rrr[2*LEGS(1)] = {0};
+    real s[10] = {0};
+    real sums[3] = {0};
+    real terms_crank[3*LEGS(LEGS_OF_crank)] = {0};
+    real o_crank[LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     Z_before(m, 1, X, V, s);
-    Z_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        Z_place_crank(1, LEGS(1), o_crank, leg, t);
+    Z_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        Z_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] = total(terms_crank + n*LEGS(1), 1);
+        sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        Z_place_rrr(1, LEGS(1), o_rrr, leg, t);
+    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[3 + n] = total(terms_rrr + n*LEGS(1), 1);
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     Z_after(1, s, sums, Z, t);
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10*LANES], sums[6*LANES], o_crank[1*LANES], o_rrr[2*LANES];
+    real s[10*LANES];
+    real sums[3*LANES];
+    real o_crank[LANES];
+    real o_rrr[2*LANES];
     Z_before(m, LANES, X, V, s);
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         Z_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
         Z_place_crank(LANES, LANES, o_crank, 0, t);
     }
-    clear(sums + 3*LANES, 3*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 3*LANES, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
         Z_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
-/* ---- H: 70 mul, 35 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- H ---- */
 INLINE void H_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2518,9 +2536,9 @@ INLINE void H_place_crank(size_t w, size_t count, const real *o, size_t first, r
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o[0*count + first + k];
-        H[(2)*w + k] = o[1*count + first + k];
-        H[(4)*w + k] = o[2*count + first + k];
+        H[0*NU*w + k] = o[0*count + first + k];
+        H[NU*w + k] = o[1*count + first + k];
+        H[2*NU*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
     }
@@ -2618,9 +2636,9 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
 INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(1)*w + k] = o[0*count + first + k];
-        H[(3)*w + k] = o[1*count + first + k];
-        H[(5)*w + k] = o[2*count + first + k];
+        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[(NU + 1)*w + k] = o[1*count + first + k];
+        H[(2*NU + 1)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
@@ -2629,33 +2647,37 @@ INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, rea
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4] = {0}, o_crank[5*LEGS(1)] = {0}, o_rrr[6*LEGS(1)] = {0};
+    real s[4] = {0};
+    real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     H_before(1, X, s);
-    H_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        H_place_crank(1, LEGS(1), o_crank, leg, H, t);
+    H_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        H_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, t);
     }
-    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        H_place_rrr(1, LEGS(1), o_rrr, leg, H, t);
+    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        H_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
 }
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4*LANES], o_crank[5*LANES], o_rrr[6*LANES];
+    real s[4*LANES];
+    real o_crank[5*LANES];
+    real o_rrr[6*LANES];
     H_before(LANES, X, s);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         H_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
         H_place_crank(LANES, LANES, o_crank, 0, H, t);
     }
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
         H_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
 }
 
-/* ---- Hk: 23 mul, 12 add, 1 div, 1 sqrt, 0 trig, every leg counted ---- */
+/* ---- Hk ---- */
 INLINE void Hk_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2710,7 +2732,7 @@ INLINE void Hk_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
         /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
         const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
-        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        /* (crank-n_c) direction of the constraint force */
         const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
         const real crank_n_c_x = crank_n_c_in_axes1_x*(crank_base_frame_yy*crank_c_1 -
             crank_base_frame_yx*crank_s_1);
@@ -2718,7 +2740,7 @@ INLINE void Hk_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, 
             crank_base_frame_xx*crank_s_1);
         /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
         const real crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y;
-        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        /* (crank-n_c) direction of the constraint force */
         o[0*count + k] = crank_n_c_x;
         o[1*count + k] = crank_n_c_y;
         /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
@@ -2733,9 +2755,9 @@ INLINE void Hk_place_crank(size_t w, size_t count, const real *o, size_t first, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[(0)*w + k] = o[0*count + first + k];
-        Hk[(1)*w + k] = o[1*count + first + k];
-        Hk[(2)*w + k] = o[2*count + first + k];
+        Hk[0*NC*w + k] = o[0*count + first + k];
+        Hk[NC*w + k] = o[1*count + first + k];
+        Hk[2*NC*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
     }
@@ -2743,25 +2765,27 @@ INLINE void Hk_place_crank(size_t w, size_t count, const real *o, size_t first, 
 
 INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    real s[4] = {0}, o_crank[5*LEGS(1)] = {0};
+    real s[4] = {0};
+    real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
     Hk_before(1, X, s);
-    Hk_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        Hk_place_crank(1, LEGS(1), o_crank, leg, Hk, t);
+    Hk_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        Hk_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, Hk, t);
     }
 }
 
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    real s[4*LANES], o_crank[5*LANES];
+    real s[4*LANES];
+    real o_crank[5*LANES];
     Hk_before(LANES, X, s);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         Hk_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
         Hk_place_crank(LANES, LANES, o_crank, 0, Hk, t);
     }
 }
 
-/* ---- constraint_bias: 30 mul, 16 add, 1 div, 1 sqrt, 0 trig, every leg counted ---- */
+/* ---- constraint_bias ---- */
 INLINE void constraint_bias_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2864,7 +2888,7 @@ INLINE void constraint_bias_place_crank(size_t w, size_t count, const real *o, s
     *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        constraint_bias[(0)*w + k] = o[0*count + first + k];
+        constraint_bias[0*w + k] = o[0*count + first + k];
         t->singular[k] += o[1*count + first + k];
         t->total[k] += o[2*count + first + k];
     }
@@ -2873,26 +2897,28 @@ INLINE void constraint_bias_place_crank(size_t w, size_t count, const real *o, s
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[7] = {0}, o_crank[3*LEGS(1)] = {0};
+    real s[7] = {0};
+    real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     constraint_bias_before(1, X, V, s);
-    constraint_bias_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        constraint_bias_place_crank(1, LEGS(1), o_crank, leg, constraint_bias, t);
+    constraint_bias_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        constraint_bias_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, constraint_bias, t);
     }
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[7*LANES], o_crank[3*LANES];
+    real s[7*LANES];
+    real o_crank[3*LANES];
     constraint_bias_before(LANES, X, V, s);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         constraint_bias_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
         constraint_bias_place_crank(LANES, LANES, o_crank, 0, constraint_bias, t);
     }
 }
 
-/* ---- required: 165 mul, 105 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- required ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
     *A, real *s)
 {
@@ -2990,7 +3016,7 @@ INLINE void required_legs_crank(const prepared *m, size_t w, size_t leg, size_t 
         const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
         /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
         const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
-        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        /* (crank-n_c) direction of the constraint force */
         const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
             crank_base_frame_xx*crank_s_1;
         const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
@@ -3024,7 +3050,7 @@ INLINE void required_legs_crank(const prepared *m, size_t w, size_t leg, size_t 
             axis_y_crank_axes1_x*crank_S_ddot_x) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2
             - crank_mu_1_t*crank_s_1);
         /* (crank-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y;
         /* (crank-c) leg force on the platform without actuation and without the mass at the connection
            point */
@@ -3037,16 +3063,16 @@ INLINE void required_legs_crank(const prepared *m, size_t w, size_t leg, size_t 
         /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
         const real crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + crank_c_t : crank_c_t;  /* R_t_crank_x */
-        terms[1*count + k] = add ? terms[1*count + k] + crank_c_t_2 : crank_c_t_2;  /* R_t_crank_y */
+        gather(&terms[0*count + k], add, crank_c_t);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, crank_c_t_2);  /* R_t_y_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[2*count + k] = add ? terms[2*count + k] + crank_R_a_t : crank_R_a_t;  /* R_a_crank_z */
+        gather(&terms[2*count + k], add, crank_R_a_t);  /* R_a_z_of_legs */
         /* (crank-w_1) reciprocal vector 1 */
         o[0*count + k] = crank_w_1_x;
         o[1*count + k] = crank_w_1_y;
         /* (crank-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = crank_H_a_1_z;
-        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        /* (crank-n_c) direction of the constraint force */
         o[3*count + k] = crank_n_c_x;
         o[4*count + k] = crank_n_c_y;
         /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
@@ -3060,12 +3086,12 @@ INLINE void required_place_crank(size_t w, size_t count, const real *o, size_t f
     real *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o[0*count + first + k];
-        H[(2)*w + k] = o[1*count + first + k];
-        H[(4)*w + k] = o[2*count + first + k];
-        Hk[(0)*w + k] = o[3*count + first + k];
-        Hk[(1)*w + k] = o[4*count + first + k];
-        Hk[(2)*w + k] = o[5*count + first + k];
+        H[0*NU*w + k] = o[0*count + first + k];
+        H[NU*w + k] = o[1*count + first + k];
+        H[2*NU*w + k] = o[2*count + first + k];
+        Hk[0*NC*w + k] = o[3*count + first + k];
+        Hk[NC*w + k] = o[4*count + first + k];
+        Hk[2*NC*w + k] = o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
     }
 }
@@ -3217,7 +3243,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
            left out */
         const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
@@ -3235,10 +3261,10 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_x : rrr_c_x;  /* R_t_t */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_y : rrr_c_y;  /* R_t_t_2 */
+        gather(&terms[3*count + k], add, rrr_c_x);  /* R_t_t */
+        gather(&terms[4*count + k], add, rrr_c_y);  /* R_t_t_2 */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_R_a_t : rrr_R_a_t;  /* R_a_rrr_z */
+        gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
         o[0*count + k] = rrr_w_1_x;
         o[1*count + k] = rrr_w_1_y;
@@ -3256,9 +3282,9 @@ INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(1)*w + k] = o[0*count + first + k];
-        H[(3)*w + k] = o[1*count + first + k];
-        H[(5)*w + k] = o[2*count + first + k];
+        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[(NU + 1)*w + k] = o[1*count + first + k];
+        H[(2*NU + 1)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
     }
@@ -3268,19 +3294,18 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
-        const real R_t_crank_x = sums[0*w + k];
         const real R_t_t = sums[3*w + k];
+        const real R_t_x_of_legs = sums[0*w + k];
         const real f_p_x = s[10*w + k];
-        const real R_t_x = R_t_crank_x + f_p_x - R_t_t;
-        const real R_t_crank_y = sums[1*w + k];
+        const real R_t_x = R_t_x_of_legs + f_p_x - R_t_t;
         const real R_t_t_2 = sums[4*w + k];
+        const real R_t_y_of_legs = sums[1*w + k];
         const real f_p_y = s[11*w + k];
-        const real R_t_y = R_t_crank_y + f_p_y - R_t_t_2;
+        const real R_t_y = R_t_y_of_legs + f_p_y - R_t_t_2;
         /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_crank_z = sums[2*w + k];
-        const real R_a_rrr_z = sums[5*w + k];
+        const real R_a_z_of_legs = sums[2*w + k];
         const real mu_p_z = s[12*w + k];
-        const real R_a_z = R_a_crank_z + R_a_rrr_z + mu_p_z;
+        const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -3292,22 +3317,26 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
-    real s[13] = {0}, sums[6] = {0}, terms_crank[3*LEGS(1)] = {0}, o_crank[7*LEGS(1)] = {0},
-        terms_rrr[3*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    real s[13] = {0};
+    real sums[5] = {0};
+    real terms_crank[5*LEGS(LEGS_OF_crank)] = {0};
+    real o_crank[7*LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     required_before(m, 1, X, V, A, s);
-    required_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        required_place_crank(1, LEGS(1), o_crank, leg, H, Hk, t);
+    required_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        required_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, Hk, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
-        sums[n] = total(terms_crank + n*LEGS(1), 1);
+    for (size_t n = 0; n < 5; ++n) {
+        sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        required_place_rrr(1, LEGS(1), o_rrr, leg, H, t);
+    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
-        sums[3 + n] = total(terms_rrr + n*LEGS(1), 1);
+    for (size_t n = 0; n < 5; ++n) {
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     required_after(1, s, sums, required);
 }
@@ -3315,22 +3344,24 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, real *Hk, verdict *t)
 {
-    real s[13*LANES], sums[6*LANES], o_crank[7*LANES], o_rrr[5*LANES];
+    real s[13*LANES];
+    real sums[5*LANES];
+    real o_crank[7*LANES];
+    real o_rrr[5*LANES];
     required_before(m, LANES, X, V, A, s);
-    clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    clear(sums, 5*LANES);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         required_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
         required_place_crank(LANES, LANES, o_crank, 0, H, Hk, t);
     }
-    clear(sums + 3*LANES, 3*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 3*LANES, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
         required_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
-/* ---- inverse_kinematics: 46 mul, 25 add, 2 div, 2 sqrt, 3 trig, every leg counted ---- */
+/* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3396,7 +3427,7 @@ INLINE void inverse_kinematics_place_crank(size_t w, size_t count, const real *o
     real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(0)*w + k] = o[0*count + first + k];
+        q[0*w + k] = o[0*count + first + k];
         t->singular[k] += o[1*count + first + k];
         t->total[k] += o[2*count + first + k];
     }
@@ -3476,8 +3507,8 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, 
     *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(1)*w + k] = o[0*count + first + k];
-        q[(2)*w + k] = o[1*count + first + k];
+        q[1*w + k] = o[0*count + first + k];
+        q[2*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
@@ -3486,33 +3517,37 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4] = {0}, o_crank[3*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    real s[4] = {0};
+    real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     inverse_kinematics_before(1, X, s);
-    inverse_kinematics_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        inverse_kinematics_place_crank(1, LEGS(1), o_crank, leg, q, t);
+    inverse_kinematics_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        inverse_kinematics_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, q, t);
     }
-    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        inverse_kinematics_place_rrr(1, LEGS(1), o_rrr, leg, q, t);
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        inverse_kinematics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, q, t);
     }
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4*LANES], o_crank[3*LANES], o_rrr[5*LANES];
+    real s[4*LANES];
+    real o_crank[3*LANES];
+    real o_rrr[5*LANES];
     inverse_kinematics_before(LANES, X, s);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         inverse_kinematics_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
         inverse_kinematics_place_crank(LANES, LANES, o_crank, 0, q, t);
     }
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
         inverse_kinematics_place_rrr(LANES, LANES, o_rrr, 0, q, t);
     }
 }
 
-/* ---- joint_rates: 77 mul, 42 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates ---- */
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3600,7 +3635,7 @@ INLINE void joint_rates_place_crank(size_t w, size_t count, const real *o, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(0)*w + k] = o[0*count + first + k];
+        qd[0*w + k] = o[0*count + first + k];
         t->singular[k] += o[1*count + first + k];
         t->total[k] += o[2*count + first + k];
     }
@@ -3708,8 +3743,8 @@ INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t 
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(1)*w + k] = o[0*count + first + k];
-        qd[(2)*w + k] = o[1*count + first + k];
+        qd[1*w + k] = o[0*count + first + k];
+        qd[2*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
@@ -3718,34 +3753,38 @@ INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[7] = {0}, o_crank[3*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    real s[7] = {0};
+    real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     joint_rates_before(1, X, V, s);
-    joint_rates_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        joint_rates_place_crank(1, LEGS(1), o_crank, leg, qd, t);
+    joint_rates_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        joint_rates_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, qd, t);
     }
-    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        joint_rates_place_rrr(1, LEGS(1), o_rrr, leg, qd, t);
+    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        joint_rates_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qd, t);
     }
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[7*LANES], o_crank[3*LANES], o_rrr[5*LANES];
+    real s[7*LANES];
+    real o_crank[3*LANES];
+    real o_rrr[5*LANES];
     joint_rates_before(LANES, X, V, s);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         joint_rates_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
         joint_rates_place_crank(LANES, LANES, o_crank, 0, qd, t);
     }
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
         joint_rates_place_rrr(LANES, LANES, o_rrr, 0, qd, t);
     }
 }
 
-/* ---- joint_accelerations: 100 mul, 55 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations ---- */
 INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
     *s)
 {
@@ -3849,7 +3888,7 @@ INLINE void joint_accelerations_place_crank(size_t w, size_t count, const real *
     real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(0)*w + k] = o[0*count + first + k];
+        qdd[0*w + k] = o[0*count + first + k];
         t->singular[k] += o[1*count + first + k];
         t->total[k] += o[2*count + first + k];
     }
@@ -3987,8 +4026,8 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o,
     real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(1)*w + k] = o[0*count + first + k];
-        qdd[(2)*w + k] = o[1*count + first + k];
+        qdd[1*w + k] = o[0*count + first + k];
+        qdd[2*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
@@ -3998,34 +4037,38 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[10] = {0}, o_crank[3*LEGS(1)] = {0}, o_rrr[5*LEGS(1)] = {0};
+    real s[10] = {0};
+    real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     joint_accelerations_before(1, X, V, A, s);
-    joint_accelerations_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        joint_accelerations_place_crank(1, LEGS(1), o_crank, leg, qdd, t);
+    joint_accelerations_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        joint_accelerations_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, qdd, t);
     }
-    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        joint_accelerations_place_rrr(1, LEGS(1), o_rrr, leg, qdd, t);
+    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        joint_accelerations_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[10*LANES], o_crank[3*LANES], o_rrr[5*LANES];
+    real s[10*LANES];
+    real o_crank[3*LANES];
+    real o_rrr[5*LANES];
     joint_accelerations_before(LANES, X, V, A, s);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         joint_accelerations_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
         joint_accelerations_place_crank(LANES, LANES, o_crank, 0, qdd, t);
     }
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
         joint_accelerations_place_rrr(LANES, LANES, o_rrr, 0, qdd, t);
     }
 }
 
-/* ---- constraints: 18 mul, 11 add, 1 div, 1 sqrt, 0 trig, every leg counted ---- */
+/* ---- constraints ---- */
 INLINE void constraints_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -4074,7 +4117,7 @@ INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t leg, size
         const real crank_size_t = m->crank_size_t[i];
         const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
             crank_rho2_1_t_2*crank_rho2_1_t_2);
-        /* (crank-phi_c1) distance by which the leg misses the platform, along a direction left out */
+        /* (crank-phi_c1) loop-closure residual along the constraint force */
         const real crank_phi_c1_t = 1/(root(crank_rho2_1));
         const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
         const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
@@ -4082,7 +4125,7 @@ INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t leg, size
             crank_n_c_in_axes1_x*(crank_phi_c1_t*crank_platform_joint_offset_x*crank_rho2_1_t*crank_rho2_1_t
             + crank_phi_c1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2*crank_rho2_1_t_2 -
             crank_platform_joint_offset_x);
-        /* (crank-phi_c1) distance by which the leg misses the platform, along a direction left out */
+        /* (crank-phi_c1) loop-closure residual along the constraint force */
         o[0*count + k] = crank_phi_c1;
         o[2*count + k] = crank_phi_c1;
         const real crank_root_1_t = m->crank_root_1_t[i];
@@ -4094,7 +4137,7 @@ INLINE void constraints_place_crank(size_t w, size_t count, const real *o, size_
     *constraints, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        constraints[(0)*w + k] = o[0*count + first + k];
+        constraints[0*w + k] = o[0*count + first + k];
         t->singular[k] += o[1*count + first + k];
         t->total[k] += o[2*count + first + k];
     }
@@ -4102,25 +4145,27 @@ INLINE void constraints_place_crank(size_t w, size_t count, const real *o, size_
 
 INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[4] = {0}, o_crank[3*LEGS(1)] = {0};
+    real s[4] = {0};
+    real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     constraints_before(1, X, s);
-    constraints_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        constraints_place_crank(1, LEGS(1), o_crank, leg, constraints, t);
+    constraints_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        constraints_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, constraints, t);
     }
 }
 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[4*LANES], o_crank[3*LANES];
+    real s[4*LANES];
+    real o_crank[3*LANES];
     constraints_before(LANES, X, s);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         constraints_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
         constraints_place_crank(LANES, LANES, o_crank, 0, constraints, t);
     }
 }
 
-/* ---- legs: 143 mul, 80 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs ---- */
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -4195,7 +4240,7 @@ INLINE void legs_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs
         const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
         /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
         const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
-        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        /* (crank-n_c) direction of the constraint force */
         const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
             crank_base_frame_xx*crank_s_1;
         const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
@@ -4229,7 +4274,7 @@ INLINE void legs_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs
             axis_y_crank_axes1_x*crank_S_ddot_x) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2
             - crank_mu_1_t*crank_s_1);
         /* (crank-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y;
         /* (crank-c) leg force on the platform without actuation and without the mass at the connection
            point */
@@ -4242,7 +4287,7 @@ INLINE void legs_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs
         /* (crank-w_1) reciprocal vector 1 */
         o[2*count + k] = crank_w_1_x;
         o[3*count + k] = crank_w_1_y;
-        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        /* (crank-n_c) direction of the constraint force */
         o[4*count + k] = crank_n_c_x;
         o[5*count + k] = crank_n_c_y;
         const real crank_root_1_t = m->crank_root_1_t[i];
@@ -4251,15 +4296,15 @@ INLINE void legs_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs
 }
 
 INLINE void legs_place_crank(size_t w, size_t count, const real *o, size_t first, real *leg_force,
-    real *drive, real *constraint_direction, verdict *t)
+    real *actuator, real *constraint_direction, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(0)*w + k] = o[0*count + first + k];
-        leg_force[(1)*w + k] = o[1*count + first + k];
-        drive[(0)*w + k] = o[2*count + first + k];
-        drive[(1)*w + k] = o[3*count + first + k];
-        constraint_direction[(0)*w + k] = o[4*count + first + k];
-        constraint_direction[(1)*w + k] = o[5*count + first + k];
+        leg_force[0*w + k] = o[0*count + first + k];
+        leg_force[1*w + k] = o[1*count + first + k];
+        actuator[0*w + k] = o[2*count + first + k];
+        actuator[1*w + k] = o[3*count + first + k];
+        constraint_direction[0*w + k] = o[4*count + first + k];
+        constraint_direction[1*w + k] = o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
     }
 }
@@ -4411,7 +4456,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
            left out */
         const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
@@ -4443,37 +4488,39 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
 }
 
 INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t first, real *leg_force,
-    real *drive, verdict *t)
+    real *actuator, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3)*w + k] = o[0*count + first + k];
-        leg_force[(4)*w + k] = o[1*count + first + k];
-        drive[(3)*w + k] = o[2*count + first + k];
-        drive[(4)*w + k] = o[3*count + first + k];
+        leg_force[3*w + k] = o[0*count + first + k];
+        leg_force[(3 + 1)*w + k] = o[1*count + first + k];
+        actuator[3*w + k] = o[2*count + first + k];
+        actuator[(3 + 1)*w + k] = o[3*count + first + k];
         t->unreachable[k] += o[4*count + first + k];
         t->singular[k] += o[5*count + first + k];
     }
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *drive, real *constraint_direction, verdict *t)
+    *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
-    real s[10] = {0}, o_crank[7*LEGS(1)] = {0}, o_rrr[6*LEGS(1)] = {0};
-    clear(leg_force, 6);
-    clear(drive, 6);
-    clear(constraint_direction, 3);
+    real s[10] = {0};
+    real o_crank[7*LEGS(LEGS_OF_crank)] = {0};
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    clear(leg_force, 3*NL);
+    clear(actuator, 6);
+    clear(constraint_direction, 3*NC);
     legs_before(1, X, V, A, s);
-    legs_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        legs_place_crank(1, LEGS(1), o_crank, leg, leg_force, drive, constraint_direction, t);
+    legs_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        legs_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, leg_force, actuator, constraint_direction, t);
     }
-    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), o_rrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        legs_place_rrr(1, LEGS(1), o_rrr, leg, leg_force, drive, t);
+    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        legs_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg_force, actuator, t);
     }
 }
 
-/* ---- potential: 80 mul, 52 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -4554,7 +4601,7 @@ INLINE void potential_legs_crank(const prepared *m, size_t w, size_t leg, size_t
             gravity_y*(crank_potential_t_2 + crank_base_frame_yx*crank_potential_t_3 +
             crank_base_frame_yy*crank_potential_t_4);
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + -crank_potential_t_5 : -crank_potential_t_5;  /* potential_crank */
+        gather(&terms[0*count + k], add, -crank_potential_t_5);  /* potential_of_legs */
         const real crank_root_1_t = m->crank_root_1_t[i];
         o[0*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
@@ -4646,7 +4693,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
             rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
             rrr_potential_t*rrr_s_1));
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t_3 : rrr_potential_t_3;  /* potential_t_2 */
+        gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
@@ -4665,10 +4712,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
-        const real potential_crank = sums[0*w + k];
+        const real potential_of_legs = sums[0*w + k];
         const real potential_t = s[4*w + k];
         const real potential_t_2 = sums[1*w + k];
-        const real potential_ = potential_crank - potential_t - potential_t_2;
+        const real potential_ = potential_of_legs - potential_t - potential_t_2;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
@@ -4676,27 +4723,31 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[5] = {0}, sums[2] = {0}, terms_crank[1*LEGS(1)] = {0}, o_crank[1*LEGS(1)] = {0},
-        terms_rrr[1*LEGS(1)] = {0}, o_rrr[2*LEGS(1)] = {0};
+    real s[5] = {0};
+    real sums[2] = {0};
+    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0};
+    real o_crank[LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     potential_before(m, 1, X, s);
-    potential_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        potential_place_crank(1, LEGS(1), o_crank, leg, t);
+    potential_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        potential_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_crank + n*LEGS(1), 1);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        potential_place_rrr(1, LEGS(1), o_rrr, leg, t);
+    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[1 + n] = total(terms_rrr + n*LEGS(1), 1);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     potential_after(1, s, sums, potential);
 }
 
-/* ---- condition: 83 mul, 46 add, 3 div, 5 sqrt, 0 trig, every leg counted ---- */
+/* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
     verdict *t)
 {
@@ -4760,7 +4811,7 @@ INLINE void condition_legs_crank(const prepared *m, size_t w, size_t leg, size_t
         const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
         /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
         const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
-        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        /* (crank-n_c) direction of the constraint force */
         const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
             crank_base_frame_xx*crank_s_1;
         const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
@@ -4784,13 +4835,13 @@ INLINE void condition_legs_crank(const prepared *m, size_t w, size_t leg, size_t
         const real crank_spread_t_3 = crank_spread_t*crank_spread_t +
             crank_spread_t_2*crank_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + crank_spread_t_3 : crank_spread_t_3;  /* spread_crank */
+        gather(&terms[0*count + k], add, crank_spread_t_3);  /* spread_crank */
         /* (crank-w_1) reciprocal vector 1 */
         o[0*count + k] = crank_w_1_x;
         o[1*count + k] = crank_w_1_y;
         /* (crank-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = crank_H_a_1_z;
-        /* (crank-n_c) unit vector that the leg's freedoms leave out */
+        /* (crank-n_c) direction of the constraint force */
         o[3*count + k] = crank_n_c_x;
         o[4*count + k] = crank_n_c_y;
         /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
@@ -4808,13 +4859,13 @@ INLINE void condition_place_crank(size_t w, size_t count, const real *o, size_t 
     real *Hk, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o[0*count + first + k];
-        H[(2)*w + k] = o[1*count + first + k];
-        H[(4)*w + k] = o[2*count + first + k];
-        Hk[(0)*w + k] = o[3*count + first + k];
-        Hk[(1)*w + k] = o[4*count + first + k];
-        Hk[(2)*w + k] = o[5*count + first + k];
-        pivots[(0)*w + k] = o[6*count + first + k];
+        H[0*NU*w + k] = o[0*count + first + k];
+        H[NU*w + k] = o[1*count + first + k];
+        H[2*NU*w + k] = o[2*count + first + k];
+        Hk[0*NC*w + k] = o[3*count + first + k];
+        Hk[NC*w + k] = o[4*count + first + k];
+        Hk[2*NC*w + k] = o[5*count + first + k];
+        pivots[0*w + k] = o[6*count + first + k];
         t->singular[k] += o[7*count + first + k];
         t->total[k] += o[8*count + first + k];
     }
@@ -4894,7 +4945,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 -
             rrr_base_frame_xx*rrr_w_1_t);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrr_pivot_size = magnitude(rrr_rho2_1);
         const real rrr_pivot_size_2 = magnitude(rrr_r_1_in_axes2_y);
         const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
@@ -4910,14 +4961,14 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
         const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* spread_rrr */
+        gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
         /* (rrr-w_1) reciprocal vector 1 */
         o[0*count + k] = rrr_w_1_x;
         o[1*count + k] = rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[3*count + k] = rrr_least_pivots;
         o[4*count + k] = rrr_disc_1;
         o[7*count + k] = (rrr_w_1_x + rrr_w_1_y) + (rrr_H_a_1_z + (rrr_least_pivots +
@@ -4934,11 +4985,11 @@ INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t fi
     *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(1)*w + k] = o[0*count + first + k];
-        H[(3)*w + k] = o[1*count + first + k];
-        H[(5)*w + k] = o[2*count + first + k];
-        pivots[(1)*w + k] = o[3*count + first + k];
-        reach[(1)*w + k] = o[4*count + first + k];
+        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[(NU + 1)*w + k] = o[1*count + first + k];
+        H[(2*NU + 1)*w + k] = o[2*count + first + k];
+        pivots[1*w + k] = o[3*count + first + k];
+        reach[1*w + k] = o[4*count + first + k];
         t->unreachable[k] += o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
         t->total[k] += o[7*count + first + k];
@@ -4961,23 +5012,27 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
-    real s[4] = {0}, sums[2] = {0}, terms_crank[1*LEGS(1)] = {0}, o_crank[9*LEGS(1)] = {0},
-        terms_rrr[1*LEGS(1)] = {0}, o_rrr[8*LEGS(1)] = {0};
-    clear(reach, 2);
+    real s[4] = {0};
+    real sums[2] = {0};
+    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0};
+    real o_crank[9*LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
+    clear(reach, NL);
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_crank(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_crank, o_crank);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        condition_place_crank(1, LEGS(1), o_crank, leg, H, Hk, pivots, t);
+    condition_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
+        condition_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, Hk, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_crank + n*LEGS(1), 1);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        condition_place_rrr(1, LEGS(1), o_rrr, leg, H, pivots, reach, t);
+    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[1 + n] = total(terms_rrr + n*LEGS(1), 1);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     condition_after(1, sums, lengths, t);
 }
@@ -4988,116 +5043,116 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, M_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, M_out);
+        refuse(NV*NV, M_out);
     }
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[3*LANES], M[9*LANES];
+    real X_in[NQ*LANES], M[NV*NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
     suspect(&why, code);
-    deliver(9, M, M_out);
+    deliver(NV*NV, M, M_out);
 }
 
 INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
-        check(3, 1, Z_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, Z_out);
+        refuse(NV, Z_out);
     }
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], Z[3*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
     suspect(&why, code);
-    deliver(3, Z, Z_out);
+    deliver(NV, Z, Z_out);
 }
 
 INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(6, 1, H_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, H_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[3*LANES], H[6*LANES];
+    real X_in[NQ*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
     suspect(&why, code);
-    deliver(6, H, H_out);
+    deliver(NV*NU, H, H_out);
 }
 
 INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     Hk_run(m, X, Hk_out, &why);
     if (!is_finite(why.total[0])) {
-        check(3, 1, Hk_out, why.overflow);
+        check(NV*NC, 1, Hk_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, Hk_out);
+        refuse(NV*NC, Hk_out);
     }
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
-    real X_in[3*LANES], Hk[3*LANES];
+    real X_in[NQ*LANES], Hk[NV*NC*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     Hk_run_lanes(m, X, Hk, &why);
     suspect(&why, code);
-    deliver(3, Hk, Hk_out);
+    deliver(NV*NC, Hk, Hk_out);
 }
 
 INLINE void constraints_one(const prepared *m, const real *X, real *constraints_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     constraints_run(m, X, constraints_out, &why);
     if (!is_finite(why.total[0])) {
         check(1, 1, constraints_out, why.overflow);
@@ -5110,10 +5165,10 @@ INLINE void constraints_one(const prepared *m, const real *X, real *constraints_
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
-    real X_in[3*LANES], constraints[1*LANES];
+    real X_in[NQ*LANES], constraints[LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     constraints_run_lanes(m, X, constraints, &why);
     suspect(&why, code);
     deliver(1, constraints, constraints_out);
@@ -5124,10 +5179,10 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     constraint_bias_run(m, X, V, constraint_bias_out, &why);
     if (!is_finite(why.total[0])) {
@@ -5142,11 +5197,11 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], constraint_bias[1*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     constraint_bias_run_lanes(m, X, V, constraint_bias, &why);
     suspect(&why, code);
     deliver(1, constraint_bias, constraint_bias_out);
@@ -5156,26 +5211,26 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
-        check(3, 1, q_out, why.overflow);
+        check(NJ, 1, q_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, q_out);
+        refuse(NJ, q_out);
     }
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[3*LANES], q[3*LANES];
+    real X_in[NQ*LANES], q[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
     suspect(&why, code);
-    deliver(3, q, q_out);
+    deliver(NJ, q, q_out);
 }
 
 INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -5183,32 +5238,32 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(3, 1, qd_out, why.overflow);
+        check(NJ, 1, qd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, qd_out);
+        refuse(NJ, qd_out);
     }
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], qd[3*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
     suspect(&why, code);
-    deliver(3, qd, qd_out);
+    deliver(NJ, qd, qd_out);
 }
 
 INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
@@ -5216,93 +5271,93 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(3, 1, qdd_out, why.overflow);
+        check(NJ, 1, qdd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, qdd_out);
+        refuse(NJ, qdd_out);
     }
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd[3*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
     suspect(&why, code);
-    deliver(3, qdd, qdd_out);
+    deliver(NJ, qdd, qdd_out);
 }
 
 INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real Hk[3] = {0}, constraint_bias[1] = {0};
+    real Hk[NV*NC] = {0}, constraint_bias[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     dynamics_run(m, X, V, M_out, Z_out, H_out, Hk, constraint_bias, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, M_out, why.overflow);
-        check(3, 1, Z_out, why.overflow);
-        check(6, 1, H_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, M_out);
-        refuse(3, Z_out);
-        refuse(6, H_out);
+        refuse(NV*NV, M_out);
+        refuse(NV, Z_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], M[9*LANES], Z[3*LANES], H[6*LANES], Hk[3*LANES],
-        constraint_bias[1*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES],
+        constraint_bias[LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     suspect(&why, code);
-    deliver(9, M, M_out);
-    deliver(3, Z, Z_out);
-    deliver(6, H, H_out);
+    deliver(NV*NV, M, M_out);
+    deliver(NV, Z, Z_out);
+    deliver(NV*NU, H, H_out);
 }
 
-INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
+INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
+    real *a, const real *b, real *x, real *unsure, real *total)
 {
     for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(0)*w + k];
-        real a01 = a[(1)*w + k];
-        real a02 = a[(2)*w + k];
-        real b0 = b[0*w + k];
-        real a10 = a[(1*stride + 0)*w + k];
-        real a11 = a[(1*stride + 1)*w + k];
-        real a12 = a[(1*stride + 2)*w + k];
-        real b1 = b[1*w + k];
-        real a20 = a[(2*stride + 0)*w + k];
-        real a21 = a[(2*stride + 1)*w + k];
-        real a22 = a[(2*stride + 2)*w + k];
-        real b2 = b[2*w + k];
+        real a00 = a[(order[0]*stride + 0)*w + k];
+        real a01 = a[(order[0]*stride + 1)*w + k];
+        real a02 = a[(order[0]*stride + 2)*w + k];
+        real b0 = b[order[0]*w + k];
+        real a10 = a[(order[1]*stride + 0)*w + k];
+        real a11 = a[(order[1]*stride + 1)*w + k];
+        real a12 = a[(order[1]*stride + 2)*w + k];
+        real b1 = b[order[1]*w + k];
+        real a20 = a[(order[2]*stride + 0)*w + k];
+        real a21 = a[(order[2]*stride + 1)*w + k];
+        real a22 = a[(order[2]*stride + 2)*w + k];
+        real b2 = b[order[2]*w + k];
         const real f0 = 1/a00;
         const real d1 = a00*a11 - a10*a01;
         const real f1 = a00/d1;
@@ -5317,112 +5372,118 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         a22 -= g21*a12;
         b2 -= g21*b1;
         const real f2 = 1/a22;
-        const real x2 = (b2)*f2;
-        const real x1 = (b1)*f1 - a12*f1*x2;
+        const real x2 = b2*f2;
+        const real x1 = b1*f1 - a12*f1*x2;
         const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
         x[0*w + k] = x0;
         x[1*w + k] = x1;
         x[2*w + k] = x2;
         total[k] += x0 + (x1 + x2);
-        const real most0 = larger(magnitude(g20), magnitude(g21));
-        const real most1 = magnitude(g10);
-        const real most2 = larger(magnitude(f0), magnitude(f1));
-        const real most3 = magnitude(f2);
-        unsure[k] += UNLESS(most0 <= R(2.5)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(250)) +
-            UNLESS(most3 <= R(1000)) + UNLESS(is_finite(a00 + d1 + a22));
+        const real most0 = larger(magnitude(g10)*(sizes[0]/sizes[1]),
+            magnitude(g20)*(sizes[0]/sizes[2]));
+        const real most1 = magnitude(g21)*(sizes[1]/sizes[2]);
+        unsure[k] += UNLESS(larger(magnitude(f0)*sizes[0], larger(magnitude(f1)*sizes[1],
+            magnitude(f2)*sizes[2])) <= R(1000));
+        unsure[k] += UNLESS(larger(most0, most1) <= R(10));
+        unsure[k] += UNLESS(is_finite(a00 + d1 + a22));
     }
 }
 
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    real wrench_in[3], required[3] = {0}, H[6] = {0}, Hk[3] = {0}, subtract_2[3] = {0}, beside_3[9] =
-        {0}, solve_4[3] = {0}, unsure_7[1] = {0}, work[12];
+    static const size_t order_solve_1[] = {0, 1, 2};
+    static const real sizes_solve_1[] = {4.0, 4.0, 1.0};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
+        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    beside(3, 2, 1, H, Hk, beside_3);
-    eliminate_0(1, 3, beside_3, subtract_2, solve_4, unsure_7, why.total);
-    if (unsure_7[0] > 0) {
-        set_matrix(3, 1, beside_3, work);
-        solve_apart(3, subtract_2, work, solve_4, why.singular);
-        check(3, 1, solve_4, why.overflow);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    eliminate_3(1, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NV, 1, beside_1, work);
+        solve_apart(NV, subtract_1, work, solve_1, why.singular);
+        check(NV, 1, solve_1, why.overflow);
     }
-    const real *const tau = solve_4;
-    const real *const lambda_ = solve_4 + 2;
-    check(2, 1, tau, why.overflow);
-    check(1, 1, lambda_, why.overflow);
+    const real *const tau = solve_1;
+    const real *const lambda_ = solve_1 + NU;
+    check(NU, 1, tau, why.overflow);
+    check(NC, 1, lambda_, why.overflow);
     judge(&why, code);
-    copy(2, tau, tau_out);
-    copy(1, lambda_, lambda_out);
+    copy(NU, tau, tau_out);
+    copy(NC, lambda_, lambda_out);
     if (*code != OK) {
-        refuse(2, tau_out);
-        refuse(1, lambda_out);
+        refuse(NU, tau_out);
+        refuse(NC, lambda_out);
     }
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES], required[3*LANES],
-        H[6*LANES], Hk[3*LANES], subtract_2[3*LANES], beside_3[9*LANES] = {0}, solve_4[3*LANES];
+    static const size_t order_solve_1[] = {0, 1, 2};
+    static const real sizes_solve_1[] = {4.0, 4.0, 1.0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
+        H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES], beside_1[NV*NV*LANES] = {0},
+        solve_1[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
-    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    beside(3, 2*LANES, 1*LANES, H, Hk, beside_3);
-    eliminate_0(LANES, 3, beside_3, subtract_2, solve_4, why.singular, why.total);
-    const real *const tau = solve_4;
-    const real *const lambda_ = solve_4 + 2*LANES;
-    add_up(2, tau, why.total);
-    add_up(1, lambda_, why.total);
+    beside(NV, NU*LANES, NC*LANES, H, Hk, beside_1);
+    eliminate_3(LANES, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, why.singular, why.total);
+    const real *const tau = solve_1;
+    const real *const lambda_ = solve_1 + NU*LANES;
+    add_up(NU, tau, why.total);
+    add_up(NC, lambda_, why.total);
     suspect(&why, code);
-    deliver(2, tau, tau_out);
-    deliver(1, lambda_, lambda_out);
+    deliver(NU, tau, tau_out);
+    deliver(NC, lambda_, lambda_out);
 }
 
-INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
+INLINE void eliminate_4(size_t w, size_t stride, const size_t *order, const real *sizes, const
+    real *a, const real *b, real *x, real *unsure, real *total)
 {
     for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(0)*w + k];
-        real a01 = a[(1)*w + k];
-        real a02 = a[(2)*w + k];
-        real a03 = a[(3)*w + k];
-        real b0 = b[0*w + k];
-        real a10 = a[(1*stride + 0)*w + k];
-        real a11 = a[(1*stride + 1)*w + k];
-        real a12 = a[(1*stride + 2)*w + k];
-        real a13 = a[(1*stride + 3)*w + k];
-        real b1 = b[1*w + k];
-        real a20 = a[(3*stride + 0)*w + k];
-        real a21 = a[(3*stride + 1)*w + k];
-        real a22 = a[(3*stride + 2)*w + k];
-        real a23 = a[(3*stride + 3)*w + k];
-        real b2 = b[3*w + k];
-        real a30 = a[(2*stride + 0)*w + k];
-        real a31 = a[(2*stride + 1)*w + k];
-        real a32 = a[(2*stride + 2)*w + k];
-        real a33 = a[(2*stride + 3)*w + k];
-        real b3 = b[2*w + k];
+        real a00 = a[(order[0]*stride + 0)*w + k];
+        real a01 = a[(order[0]*stride + 1)*w + k];
+        real a02 = a[(order[0]*stride + 2)*w + k];
+        real a03 = a[(order[0]*stride + 3)*w + k];
+        real b0 = b[order[0]*w + k];
+        real a10 = a[(order[1]*stride + 0)*w + k];
+        real a11 = a[(order[1]*stride + 1)*w + k];
+        real a12 = a[(order[1]*stride + 2)*w + k];
+        real a13 = a[(order[1]*stride + 3)*w + k];
+        real b1 = b[order[1]*w + k];
+        real a20 = a[(order[2]*stride + 0)*w + k];
+        real a21 = a[(order[2]*stride + 1)*w + k];
+        real a22 = a[(order[2]*stride + 2)*w + k];
+        real a23 = a[(order[2]*stride + 3)*w + k];
+        real b2 = b[order[2]*w + k];
+        real a30 = a[(order[3]*stride + 0)*w + k];
+        real a31 = a[(order[3]*stride + 1)*w + k];
+        real a32 = a[(order[3]*stride + 2)*w + k];
+        real a33 = a[(order[3]*stride + 3)*w + k];
+        real b3 = b[order[3]*w + k];
         const real f0 = 1/a00;
         const real d1 = a00*a11 - a10*a01;
         const real f1 = a00/d1;
@@ -5453,8 +5514,8 @@ INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, r
         const real f3 = a22/d3;
         const real g32 = a32*f2;
         b3 -= g32*b2;
-        const real x3 = (b3)*f3;
-        const real x2 = (b2)*f2 - a23*f2*x3;
+        const real x3 = b3*f3;
+        const real x2 = b2*f2 - a23*f2*x3;
         const real x1 = (b1 - a13*x3)*f1 - a12*f1*x2;
         const real x0 = (b0 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
         x[0*w + k] = x0;
@@ -5462,178 +5523,185 @@ INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, r
         x[2*w + k] = x2;
         x[3*w + k] = x3;
         total[k] += (x0 + x1) + (x2 + x3);
-        const real most0 = larger(magnitude(g30), magnitude(g31));
-        const real most1 = larger(magnitude(g20), larger(magnitude(g21), magnitude(g32)));
-        const real most2 = magnitude(g10);
-        const real most3 = larger(magnitude(f0), magnitude(f1));
-        const real most4 = magnitude(f2);
-        const real most5 = magnitude(f3);
-        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(2.5)) + UNLESS(most2 <= R(10))
-            + UNLESS(most3 <= R(250)) + UNLESS(most4 <= R(1000)) + UNLESS(most5 <= R(4000)) +
-            UNLESS(is_finite(a00 + d1 + a22 + d3));
+        const real most0 = larger(magnitude(g10)*(sizes[0]/sizes[1]),
+            larger(magnitude(g20)*(sizes[0]/sizes[2]), magnitude(g30)*(sizes[0]/sizes[3])));
+        const real most1 = larger(magnitude(g21)*(sizes[1]/sizes[2]),
+            magnitude(g31)*(sizes[1]/sizes[3]));
+        const real most2 = magnitude(g32)*(sizes[2]/sizes[3]);
+        unsure[k] += UNLESS(larger(larger(magnitude(f0)*sizes[0], magnitude(f1)*sizes[1]),
+            larger(magnitude(f2)*sizes[2], magnitude(f3)*sizes[3])) <= R(1000));
+        unsure[k] += UNLESS(larger(most0, larger(most1, most2)) <= R(10));
+        unsure[k] += UNLESS(is_finite(a00 + d1 + a22 + d3));
     }
 }
 
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, real *lambda_out, int *code)
 {
-    real wrench_in[3], M[9] = {0}, Z[3] = {0}, H[6] = {0}, Hk[3] = {0}, constraint_bias[1] = {0},
-        times_1[3] = {0}, add_3[3] = {0}, subtract_4[3] = {0}, negative_5[1] = {0}, join_6[4] = {0},
-        solve_8[4] = {0}, unsure_12[1] = {0}, work[32];
+    static const size_t order_solve_1[] = {0, 1, 3, 2};
+    static const real sizes_solve_1[] = {4.0, 4.0, 1.0, 0.25};
+    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
+        constraint_bias[1] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
+        negative_1[1] = {0}, join_1[4] = {0}, solve_1[(NV + NC)] = {0}, unsure_solve_1[1] = {0},
+        work[(NV + NC)*(PADDED(NV + NC))];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(tau, 2);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(2, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
-    product(3, 2, 1, 1, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, 1, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
     for (size_t i = 0; i < 1; ++i) {
-        negative_5[i] = -constraint_bias[i];
+        negative_1[i] = -constraint_bias[i];
     }
-    beside(1, 3, 1, subtract_4, negative_5, join_6);
-    saddle(3, 1, stride_of(4, 1), 1, M, Hk, work);
-    eliminate_1(1, stride_of(4, 1), work, join_6, solve_8, unsure_12, why.total);
-    if (unsure_12[0] > 0) {
-        solve_apart(4, join_6, work, solve_8, why.singular);
-        check(4, 1, solve_8, why.overflow);
+    beside(1, NV, 1, subtract_1, negative_1, join_1);
+    saddle(NV, NC, stride_of(NV + NC, 1), 1, M, Hk, work);
+    eliminate_4(1, stride_of(NV + NC, 1), order_solve_1, sizes_solve_1, work, join_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        solve_apart(NV + NC, join_1, work, solve_1, why.singular);
+        check(NV + NC, 1, solve_1, why.overflow);
     }
-    const real *const A = solve_8;
-    const real *const lambda_ = solve_8 + 3;
-    check(3, 1, A, why.overflow);
-    check(1, 1, lambda_, why.overflow);
+    const real *const A = solve_1;
+    const real *const lambda_ = solve_1 + NV;
+    check(NV, 1, A, why.overflow);
+    check(NC, 1, lambda_, why.overflow);
     judge(&why, code);
-    copy(3, A, A_out);
-    copy(1, lambda_, lambda_out);
+    copy(NV, A, A_out);
+    copy(NC, lambda_, lambda_out);
     if (*code != OK) {
-        refuse(3, A_out);
-        refuse(1, lambda_out);
+        refuse(NV, A_out);
+        refuse(NC, lambda_out);
     }
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], tau_in[2*LANES], wrench_in[3*LANES], M[9*LANES], Z[3*LANES],
-        H[6*LANES], Hk[3*LANES], constraint_bias[1*LANES], times_1[3*LANES] = {0}, add_3[3*LANES],
-        subtract_4[3*LANES], negative_5[1*LANES], join_6[4*LANES] = {0}, solve_8[4*LANES],
-        work[32*LANES];
+    static const size_t order_solve_1[] = {0, 1, 3, 2};
+    static const real sizes_solve_1[] = {4.0, 4.0, 1.0, 0.25};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
+        Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[LANES], times_1[NV*LANES] = {0},
+        add_1[NV*LANES], subtract_1[NV*LANES], negative_1[LANES], join_1[4*LANES] = {0}, solve_1[((NV
+        + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    tau = side_by_side(2, tau, tau_in, why.total);
-    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
-    product(3, 2, 1, LANES, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    for (size_t i = 0; i < 1*LANES; ++i) {
-        negative_5[i] = -constraint_bias[i];
+    for (size_t i = 0; i < LANES; ++i) {
+        negative_1[i] = -constraint_bias[i];
     }
-    beside(1, 3*LANES, 1*LANES, subtract_4, negative_5, join_6);
-    saddle(3, 1, stride_of(4, LANES), LANES, M, Hk, work);
-    eliminate_1(LANES, stride_of(4, LANES), work, join_6, solve_8, why.singular, why.total);
-    const real *const A = solve_8;
-    const real *const lambda_ = solve_8 + 3*LANES;
-    add_up(3, A, why.total);
-    add_up(1, lambda_, why.total);
+    beside(1, NV*LANES, LANES, subtract_1, negative_1, join_1);
+    saddle(NV, NC, stride_of(NV + NC, LANES), LANES, M, Hk, work);
+    eliminate_4(LANES, stride_of(NV + NC, LANES), order_solve_1, sizes_solve_1, work, join_1, solve_1, why.singular, why.total);
+    const real *const A = solve_1;
+    const real *const lambda_ = solve_1 + NV*LANES;
+    add_up(NV, A, why.total);
+    add_up(NC, lambda_, why.total);
     suspect(&why, code);
-    deliver(3, A, A_out);
-    deliver(1, lambda_, lambda_out);
+    deliver(NV, A, A_out);
+    deliver(NC, lambda_, lambda_out);
 }
 
 INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, A, why.invalid);
+    check(NV, 1, A, why.invalid);
     const real *const completed = A;
-    check(3, 1, completed, why.overflow);
+    check(NV, 1, completed, why.overflow);
     judge(&why, code);
-    copy(3, completed, completed_out);
+    copy(NV, completed, completed_out);
     if (*code != OK) {
-        refuse(3, completed_out);
+        refuse(NV, completed_out);
     }
 }
 
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t places_0[] = {0, 1};
-    static const size_t places_1[] = {0};
-    real wrench_in[3], required[3] = {0}, H[6] = {0}, Hk[3] = {0}, subtract_2[3] = {0}, beside_3[9] =
-        {0}, solve_4[3] = {0}, unsure_7[1] = {0}, leg_force[6] = {0}, drive[6] = {0},
-        constraint_direction[3] = {0}, add_forces_7[6] = {0}, forces[6] = {0}, work[12];
+    static const size_t order_solve_1[] = {0, 1, 2};
+    static const real sizes_solve_1[] = {4.0, 4.0, 1.0};
+    static const size_t places_forces[] = {0};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
+        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0},
+        actuator[6] = {0}, constraint_direction[3*NC] = {0}, add_forces_1[3*NL] = {0}, forces[NL*(NL +
+        NC)] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    beside(3, 2, 1, H, Hk, beside_3);
-    eliminate_0(1, 3, beside_3, subtract_2, solve_4, unsure_7, why.total);
-    if (unsure_7[0] > 0) {
-        set_matrix(3, 1, beside_3, work);
-        solve_apart(3, subtract_2, work, solve_4, why.singular);
-        check(3, 1, solve_4, why.overflow);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    eliminate_3(1, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NV, 1, beside_1, work);
+        solve_apart(NV, subtract_1, work, solve_1, why.singular);
+        check(NV, 1, solve_1, why.overflow);
     }
-    const real *const split_5 = solve_4;
-    const real *const split_6 = solve_4 + 2;
-    legs_run(m, X, V, A, leg_force, drive, constraint_direction, &why);
-    for (size_t i = 0; i < 6; ++i) {
-        add_forces_7[i] = leg_force[i];
+    const real *const split_1 = solve_1;
+    const real *const split_2 = solve_1 + 2;
+    legs_run(m, X, V, A, leg_force, actuator, constraint_direction, &why);
+    for (size_t i = 0; i < 3*NL; ++i) {
+        add_forces_1[i] = leg_force[i];
     }
-    add_forces(2, 3, 1, places_0, split_5, drive, add_forces_7);
-    for (size_t i = 0; i < 6; ++i) {
-        forces[i] = add_forces_7[i];
+    add_forces(NL, 3, 1, fivebar_offset_ACTUATED, split_1, actuator, add_forces_1);
+    for (size_t i = 0; i < NL*(NL + NC); ++i) {
+        forces[i] = add_forces_1[i];
     }
-    add_forces(1, 3, 1, places_1, split_6, constraint_direction, forces);
-    check(6, 1, forces, why.overflow);
+    add_forces(NC, 3, 1, places_forces, split_2, constraint_direction, forces);
+    check(NL*(NL + NC), 1, forces, why.overflow);
     judge(&why, code);
-    copy(6, forces, forces_out);
+    copy(NL*(NL + NC), forces, forces_out);
     if (*code != OK) {
-        refuse(6, forces_out);
+        refuse(NL*(NL + NC), forces_out);
     }
 }
 
 INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
-    real M[9] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
-    half_form(3, 1, V, M, kinetic);
+    half_form(NV, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
@@ -5649,12 +5717,12 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
 INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
-    static const size_t places_0[] = {2};
-    real length_in[1], H[6] = {0}, Hk[3] = {0}, lengths[2] = {0}, legs[2] = {0}, reach[2] = {0},
-        choose_length_1[1] = {0}, divide_rows_2[6] = {0}, sigma[2] = {0};
+    static const size_t places_divide_rows_1[] = {2};
+    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
+        {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
@@ -5662,86 +5730,86 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 6; ++i) {
-        divide_rows_2[i] = H[i];
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
     }
-    divide_rows(1, 2, 1, places_0, choose_length_1, divide_rows_2);
-    singular_values(3, 2, divide_rows_2, sigma);
+    divide_rows(1, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(2, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(2, 1, sigma, why.overflow);
+    check(NU, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(2, sigma, sigma_out);
-    copy(2, legs, legs_out);
+    copy(NU, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(2, sigma_out);
-        refuse(2, legs_out);
+        refuse(NU, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 INLINE void condition_constrained_one(const prepared *m, const real *X, const real *length, real
     *sigma_out, real *legs_out, int *code)
 {
-    static const size_t places_0[] = {2};
-    real length_in[1], H[6] = {0}, Hk[3] = {0}, lengths[2] = {0}, legs[2] = {0}, reach[2] = {0},
-        beside_1[9] = {0}, choose_length_2[1] = {0}, divide_rows_3[9] = {0}, sigma[3] = {0};
+    static const size_t places_divide_rows_1[] = {2};
+    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
+        {0}, beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] =
+        {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
-    beside(3, 2, 1, H, Hk, beside_1);
+    beside(NV, NU, NC, H, Hk, beside_1);
     for (size_t i = 0; i < 1; ++i) {
-        choose_length_2[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
+        choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 9; ++i) {
-        divide_rows_3[i] = beside_1[i];
+    for (size_t i = 0; i < NV*NV; ++i) {
+        divide_rows_1[i] = beside_1[i];
     }
-    divide_rows(1, 3, 1, places_0, choose_length_2, divide_rows_3);
-    singular_values(3, 3, divide_rows_3, sigma);
+    divide_rows(1, NV, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NV, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(2, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(3, 1, sigma, why.overflow);
+    check(NV, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(3, sigma, sigma_out);
-    copy(2, legs, legs_out);
+    copy(NV, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(3, sigma_out);
-        refuse(2, legs_out);
+        refuse(NV, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 1};
-    real q[3] = {0}, subtract_2[2] = {0}, wrap_turns_3[2] = {0}, constraints[1] = {0}, negative_4[1] =
-        {0}, gap[3] = {0};
+    real q[NJ] = {0}, subtract_1[NU] = {0}, wrap_turns_1[NU] = {0}, constraints[1] = {0},
+        negative_1[1] = {0}, gap[3] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(q_actuated, 2);
+    const real total_in = total(X, NQ) + total(q_actuated, NU);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(2, 1, q_actuated, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
     const real *const take_1 = q;
-    for (size_t i = 0; i < 2; ++i) {
-        subtract_2[i] = q_actuated[i] - take_1[i];
+    for (size_t i = 0; i < NU; ++i) {
+        subtract_1[i] = q_actuated[i] - take_1[i];
     }
-    for (size_t i = 0; i < 2; ++i) {
-        wrap_turns_3[i] = subtract_2[i];
+    for (size_t i = 0; i < NU; ++i) {
+        wrap_turns_1[i] = subtract_1[i];
     }
-    wrap_turns(2, 1, places_0, wrap_turns_3);
+    wrap_turns(NU, 1, fivebar_offset_ACTUATED, wrap_turns_1);
     constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 1; ++i) {
-        negative_4[i] = -constraints[i];
+        negative_1[i] = -constraints[i];
     }
-    beside(1, 2, 1, wrap_turns_3, negative_4, gap);
+    beside(1, NU, 1, wrap_turns_1, negative_1, gap);
     check(3, 1, gap, why.overflow);
     judge(&why, code);
     copy(3, gap, gap_out);
@@ -5752,27 +5820,27 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
 
 static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real H[6] = {0}, Hk[3] = {0}, slope[9] = {0};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H, &why);
     Hk_run(m, X, Hk, &why);
-    beside(3, 2, 1, H, Hk, slope);
-    check(9, 1, slope, why.overflow);
+    beside(NV, NU, NC, H, Hk, slope);
+    check(NV*NV, 1, slope, why.overflow);
     judge(&why, code);
-    copy(9, slope, slope_out);
+    copy(NV*NV, slope, slope_out);
     if (*code != OK) {
-        refuse(9, slope_out);
+        refuse(NV*NV, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
-    enum { N = 3, NV = 3, TRIALS = 12 };
+    enum { N = 3, TRIALS = 12 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[3] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     mismatch_one(m, found, q_actuated, gap, &code);
@@ -5815,38 +5883,38 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
-    real X[3] = {0};
+    real X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(q_actuated, 2) + total(X0, 3);
+    const real total_in = total(q_actuated, NU) + total(X0, NQ);
     if (!is_finite(total_in)) {
-        check(2, 1, q_actuated, why.invalid);
-        check(3, 1, X0, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
+        check(NQ, 1, X0, why.invalid);
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(3, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(3, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(3, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, int *code)
 {
-    real constraints[1] = {0}, gap[1] = {0};
+    real constraints[1] = {0}, gap[NC] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     constraints_run(m, X, constraints, &why);
-    for (size_t i = 0; i < 1; ++i) {
+    for (size_t i = 0; i < NC; ++i) {
         gap[i] = -constraints[i];
     }
-    check(1, 1, gap, why.overflow);
+    check(NC, 1, gap, why.overflow);
     judge(&why, code);
-    copy(1, gap, gap_out);
+    copy(NC, gap, gap_out);
     if (*code != OK) {
-        refuse(1, gap_out);
+        refuse(NC, gap_out);
     }
 }
 
@@ -5854,23 +5922,23 @@ static void constraint_slope_one(const prepared *m, const real *X, real *slope_o
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     Hk_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
-        check(3, 1, slope_out, why.overflow);
+        check(NV*NC, 1, slope_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, slope_out);
+        refuse(NV*NC, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_constraint_gap(const prepared *m, const real *start, real *found)
 {
-    enum { N = 1, NV = 3, TRIALS = 1 };
+    enum { N = NC, TRIALS = 1 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[3] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     constraint_gap_one(m, found, gap, &code);
@@ -5912,26 +5980,26 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 
 INLINE void project_one(const prepared *m, const real *X, real *projected_out, int *code)
 {
-    real projected[3] = {0};
+    real projected[NQ] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     blame(search_constraint_gap(m, X, projected), &why);
-    check(3, 1, projected, why.overflow);
+    check(NQ, 1, projected, why.overflow);
     judge(&why, code);
-    copy(3, projected, projected_out);
+    copy(NQ, projected, projected_out);
     if (*code != OK) {
-        refuse(3, projected_out);
+        refuse(NQ, projected_out);
     }
 }
 
 INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
-    real subtract_1[3] = {0};
+    real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, V, why.invalid);
-    for (size_t i = 0; i < 3; ++i) {
+    check(NV, 1, V, why.invalid);
+    for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
@@ -5946,85 +6014,85 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
     *code)
 {
-    real M[9] = {0}, momentum[3] = {0};
+    real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
-    product(3, 3, 1, 1, M, V, momentum);
-    check(3, 1, momentum, why.overflow);
+    product(NV, NV, 1, 1, M, V, momentum);
+    check(NV, 1, momentum, why.overflow);
     judge(&why, code);
-    copy(3, momentum, momentum_out);
+    copy(NV, momentum, momentum_out);
     if (*code != OK) {
-        refuse(3, momentum_out);
+        refuse(NV, momentum_out);
     }
 }
 
 INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
     int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], M[9*LANES], momentum[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     M_run_lanes(m, X, M, &why);
-    product(3, 3, 1, LANES, M, V, momentum);
-    add_up(3, momentum, why.total);
+    product(NV, NV, 1, LANES, M, V, momentum);
+    add_up(NV, momentum, why.total);
     suspect(&why, code);
-    deliver(3, momentum, momentum_out);
+    deliver(NV, momentum, momentum_out);
 }
 
 INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2};
-    real q[3] = {0}, margins[3] = {0};
+    static const size_t places_margins[] = {0, 1, 2};
+    real q[NJ] = {0}, margins[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
-    unlimited(3, 3, 1, places_0, margins, why.overflow);
+    unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     judge(&why, code);
-    copy(3, margins, margins_out);
+    copy(NJ, margins, margins_out);
     if (*code != OK) {
-        refuse(3, margins_out);
+        refuse(NJ, margins_out);
     }
 }
 
 INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2};
-    real X_in[3*LANES], q[3*LANES], margins[3*LANES];
+    static const size_t places_margins[] = {0, 1, 2};
+    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 3*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         margins[i] = q[i];
     }
-    unlimited(3, 3, LANES, places_0, margins, why.invalid);
+    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
     suspect(&why, code);
-    deliver(3, margins, margins_out);
+    deliver(NJ, margins, margins_out);
 }
 
 INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real q[3] = {0}, subtract_1[3] = {0}, within[1] = {0};
+    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(3, 1, subtract_1, within, why.overflow);
+    not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     judge(&why, code);
     copy(1, within, within_out);
@@ -6035,15 +6103,15 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
 
 INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real X_in[3*LANES], q[3*LANES], subtract_1[3*LANES], within[1*LANES] = {0};
+    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 3*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(3, LANES, subtract_1, within, why.invalid);
+    not_negative(NJ, LANES, subtract_1, within, why.invalid);
     add_up(1, within, why.total);
     suspect(&why, code);
     deliver(1, within, within_out);
@@ -6051,122 +6119,122 @@ INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_o
 
 INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real q_of_inverse_kinematics[3] = {0};
+    real q_of_inverse_kinematics[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
     const real *const q = q_of_inverse_kinematics;
-    check(2, 1, q, why.overflow);
+    check(NU, 1, q, why.overflow);
     judge(&why, code);
-    copy(2, q, q_out);
+    copy(NU, q, q_out);
     if (*code != OK) {
-        refuse(2, q_out);
+        refuse(NU, q_out);
     }
 }
 
 INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[3*LANES], q_of_inverse_kinematics[3*LANES];
+    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
     const real *const q = q_of_inverse_kinematics;
-    add_up(2, q, why.total);
+    add_up(NU, q, why.total);
     suspect(&why, code);
-    deliver(2, q, q_out);
+    deliver(NU, q, q_out);
 }
 
 INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real qd_of_joint_rates[3] = {0};
+    real qd_of_joint_rates[NJ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
     const real *const qd = qd_of_joint_rates;
-    check(2, 1, qd, why.overflow);
+    check(NU, 1, qd, why.overflow);
     judge(&why, code);
-    copy(2, qd, qd_out);
+    copy(NU, qd, qd_out);
     if (*code != OK) {
-        refuse(2, qd_out);
+        refuse(NU, qd_out);
     }
 }
 
 INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
     int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], qd_of_joint_rates[3*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
     const real *const qd = qd_of_joint_rates;
-    add_up(2, qd, why.total);
+    add_up(NU, qd, why.total);
     suspect(&why, code);
-    deliver(2, qd, qd_out);
+    deliver(NU, qd, qd_out);
 }
 
 INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real qdd_of_joint_accelerations[3] = {0};
+    real qdd_of_joint_accelerations[NJ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
     const real *const qdd = qdd_of_joint_accelerations;
-    check(2, 1, qdd, why.overflow);
+    check(NU, 1, qdd, why.overflow);
     judge(&why, code);
-    copy(2, qdd, qdd_out);
+    copy(NU, qdd, qdd_out);
     if (*code != OK) {
-        refuse(2, qdd_out);
+        refuse(NU, qdd_out);
     }
 }
 
 INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of_joint_accelerations[3*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
     const real *const qdd = qdd_of_joint_accelerations;
-    add_up(2, qdd, why.total);
+    add_up(NU, qdd, why.total);
     suspect(&why, code);
-    deliver(2, qdd, qdd_out);
+    deliver(NU, qdd, qdd_out);
 }
 
 INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real H[6] = {0}, times_1[3] = {0}, power[1] = {0};
+    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(tau, 2);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(2, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
     H_run(m, X, H, &why);
-    product(3, 2, 1, 1, H, tau, times_1);
-    inner(3, 1, times_1, V, power);
+    product(NV, NU, 1, 1, H, tau, times_1);
+    inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     judge(&why, code);
     copy(1, power, power_out);
@@ -6178,16 +6246,16 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
 INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], tau_in[2*LANES], H[6*LANES], times_1[3*LANES] = {0},
-        power[1*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        power[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    tau = side_by_side(2, tau, tau_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
     H_run_lanes(m, X, H, &why);
-    product(3, 2, 1, LANES, H, tau, times_1);
-    inner(3, LANES, times_1, V, power);
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    inner(NV, LANES, times_1, V, power);
     add_up(1, power, why.total);
     suspect(&why, code);
     deliver(1, power, power_out);
@@ -6198,7 +6266,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     real R[4] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     const real *const take_1 = X + 2;
     rotation_of_angle(take_1, R);
     check(4, 1, R, why.overflow);
@@ -6211,7 +6279,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
 
 INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
-    real angle_of_rotation_1[1] = {0}, join_2[3] = {0};
+    real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 2) + total(R, 4);
@@ -6220,13 +6288,13 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
         check(4, 1, R, why.invalid);
     }
     angle_of_rotation(R, angle_of_rotation_1);
-    beside(1, 2, 1, t, angle_of_rotation_1, join_2);
-    const real *const X = join_2;
-    check(3, 1, X, why.overflow);
+    beside(1, 2, 1, t, angle_of_rotation_1, join_1);
+    const real *const X = join_1;
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(3, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(3, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -6234,97 +6302,97 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     const real *const X_dot = V;
-    check(3, 1, X_dot, why.overflow);
+    check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
-    copy(3, X_dot, X_dot_out);
+    copy(NQ, X_dot, X_dot_out);
     if (*code != OK) {
-        refuse(3, X_dot_out);
+        refuse(NQ, X_dot_out);
     }
 }
 
 INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
-    real X_moved[3] = {0};
+    real X_moved[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(step, 3);
+    const real total_in = total(X, NQ) + total(step, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, step, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, step, why.invalid);
     }
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(3, 1, X_moved, why.overflow);
+    check(NQ, 1, X_moved, why.overflow);
     judge(&why, code);
-    copy(3, X_moved, X_moved_out);
+    copy(NQ, X_moved, X_moved_out);
     if (*code != OK) {
-        refuse(3, X_moved_out);
+        refuse(NQ, X_moved_out);
     }
 }
 
 INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
-    static const size_t places_0[] = {2};
-    real subtract_1[3] = {0}, step[3] = {0};
+    static const size_t places_step[] = {2};
+    real subtract_1[NQ] = {0}, step[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 3) + total(X1, 3);
+    const real total_in = total(X0, NQ) + total(X1, NQ);
     if (!is_finite(total_in)) {
-        check(3, 1, X0, why.invalid);
-        check(3, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
     }
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NV; ++i) {
         step[i] = subtract_1[i];
     }
-    wrap_turns(1, 1, places_0, step);
-    check(3, 1, step, why.overflow);
+    wrap_turns(1, 1, places_step, step);
+    check(NV, 1, step, why.overflow);
     judge(&why, code);
-    copy(3, step, step_out);
+    copy(NV, step, step_out);
     if (*code != OK) {
-        refuse(3, step_out);
+        refuse(NV, step_out);
     }
 }
 
 INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    static const size_t places_0[] = {2};
-    real subtract_1[3] = {0}, wrap_turns_2[3] = {0}, scale_3[3] = {0}, X[3] = {0};
+    static const size_t places_wrap_turns_1[] = {2};
+    real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 3) + total(X1, 3) + total(s, 1);
+    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
     if (!is_finite(total_in)) {
-        check(3, 1, X0, why.invalid);
-        check(3, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
-    for (size_t i = 0; i < 3; ++i) {
-        wrap_turns_2[i] = subtract_1[i];
+    for (size_t i = 0; i < NQ; ++i) {
+        wrap_turns_1[i] = subtract_1[i];
     }
-    wrap_turns(1, 1, places_0, wrap_turns_2);
-    for (size_t i = 0; i < 3; ++i) {
-        scale_3[i] = wrap_turns_2[i]*s[i%(1)];
+    wrap_turns(1, 1, places_wrap_turns_1, wrap_turns_1);
+    for (size_t i = 0; i < NQ; ++i) {
+        scale_1[i] = wrap_turns_1[i]*s[i%(1)];
     }
-    for (size_t i = 0; i < 3; ++i) {
-        X[i] = X0[i] + scale_3[i];
+    for (size_t i = 0; i < NQ; ++i) {
+        X[i] = X0[i] + scale_1[i];
     }
-    check(3, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(3, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(3, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -6344,16 +6412,16 @@ size_t fivebar_offset_M_batch(const fivebar_offset_model *model, size_t n, const
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_lanes(model, X + 3*i, M + 9*i, codes);
+        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_M(model, X + 3*(i + k), M + 9*(i + k));
+                codes[k] = fivebar_offset_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_M(model, X + 3*i, M + 9*i);
+        const int code = fivebar_offset_M(model, X + NQ*i, M + NV*NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6373,16 +6441,16 @@ size_t fivebar_offset_Z_batch(const fivebar_offset_model *model, size_t n, const
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_lanes(model, X + 3*i, V + 3*i, Z + 3*i, codes);
+        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_Z(model, X + 3*(i + k), V + 3*(i + k), Z + 3*(i + k));
+                codes[k] = fivebar_offset_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_Z(model, X + 3*i, V + 3*i, Z + 3*i);
+        const int code = fivebar_offset_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6402,16 +6470,16 @@ size_t fivebar_offset_H_batch(const fivebar_offset_model *model, size_t n, const
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_lanes(model, X + 3*i, H + 6*i, codes);
+        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_H(model, X + 3*(i + k), H + 6*(i + k));
+                codes[k] = fivebar_offset_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_H(model, X + 3*i, H + 6*i);
+        const int code = fivebar_offset_H(model, X + NQ*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6431,16 +6499,16 @@ size_t fivebar_offset_Hk_batch(const fivebar_offset_model *model, size_t n, cons
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Hk_lanes(model, X + 3*i, Hk + 3*i, codes);
+        Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_Hk(model, X + 3*(i + k), Hk + 3*(i + k));
+                codes[k] = fivebar_offset_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_Hk(model, X + 3*i, Hk + 3*i);
+        const int code = fivebar_offset_Hk(model, X + NQ*i, Hk + NV*NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6460,16 +6528,16 @@ size_t fivebar_offset_constraints_batch(const fivebar_offset_model *model, size_
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraints_lanes(model, X + 3*i, residual + 1*i, codes);
+        constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_constraints(model, X + 3*(i + k), residual + 1*(i + k));
+                codes[k] = fivebar_offset_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_constraints(model, X + 3*i, residual + 1*i);
+        const int code = fivebar_offset_constraints(model, X + NQ*i, residual + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6489,16 +6557,17 @@ size_t fivebar_offset_constraint_bias_batch(const fivebar_offset_model *model, s
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraint_bias_lanes(model, X + 3*i, V + 3*i, bias + 1*i, codes);
+        constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_constraint_bias(model, X + 3*(i + k), V + 3*(i + k), bias + 1*(i + k));
+                codes[k] = fivebar_offset_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i +
+                    k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_constraint_bias(model, X + 3*i, V + 3*i, bias + 1*i);
+        const int code = fivebar_offset_constraint_bias(model, X + NQ*i, V + NV*i, bias + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6518,16 +6587,16 @@ size_t fivebar_offset_inverse_kinematics_batch(const fivebar_offset_model *model
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_lanes(model, X + 3*i, q + 3*i, codes);
+        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_inverse_kinematics(model, X + 3*(i + k), q + 3*(i + k));
+                codes[k] = fivebar_offset_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_inverse_kinematics(model, X + 3*i, q + 3*i);
+        const int code = fivebar_offset_inverse_kinematics(model, X + NQ*i, q + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6547,16 +6616,16 @@ size_t fivebar_offset_joint_rates_batch(const fivebar_offset_model *model, size_
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_lanes(model, X + 3*i, V + 3*i, rates + 3*i, codes);
+        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_joint_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 3*(i + k));
+                codes[k] = fivebar_offset_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_joint_rates(model, X + 3*i, V + 3*i, rates + 3*i);
+        const int code = fivebar_offset_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6578,18 +6647,18 @@ size_t fivebar_offset_joint_accelerations_batch(const fivebar_offset_model *mode
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 3*i, codes);
+        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_joint_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
-                    accelerations + 3*(i + k));
+                codes[k] = fivebar_offset_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
+                    k), accelerations + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_joint_accelerations(model, X + 3*i, V + 3*i, A + 3*i,
-            accelerations + 3*i);
+        const int code = fivebar_offset_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6611,17 +6680,18 @@ size_t fivebar_offset_dynamics_batch(const fivebar_offset_model *model, size_t n
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_lanes(model, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 6*i, codes);
+        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i +
-                    k), H + 6*(i + k));
+                codes[k] = fivebar_offset_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
+                    NV*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_dynamics(model, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 6*i);
+        const int code = fivebar_offset_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
+            NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6644,19 +6714,19 @@ size_t fivebar_offset_inverse_dynamics_batch(const fivebar_offset_model *model, 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_lanes(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau + 2*i,
-            lambda + 1*i, codes);
+        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+            NU*i, lambda + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_inverse_dynamics(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
-                    wrench ? wrench + 3*(i + k) : NULL, tau + 2*(i + k), lambda + 1*(i + k));
+                codes[k] = fivebar_offset_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k), lambda + NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_inverse_dynamics(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench
-            + 3*i : NULL, tau + 2*i, lambda + 1*i);
+        const int code = fivebar_offset_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
+            wrench + NW*i : NULL, tau + NU*i, lambda + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6678,19 +6748,19 @@ size_t fivebar_offset_forward_dynamics_batch(const fivebar_offset_model *model, 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_lanes(model, X + 3*i, V + 3*i, tau + 2*i, wrench ? wrench + 3*i : NULL, A + 3*i,
-            lambda + 1*i, codes);
+        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+            NV*i, lambda + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_forward_dynamics(model, X + 3*(i + k), V + 3*(i + k), tau + 2*(i + k),
-                    wrench ? wrench + 3*(i + k) : NULL, A + 3*(i + k), lambda + 1*(i + k));
+                codes[k] = fivebar_offset_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i +
+                    k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_forward_dynamics(model, X + 3*i, V + 3*i, tau + 2*i, wrench ?
-            wrench + 3*i : NULL, A + 3*i, lambda + 1*i);
+        const int code = fivebar_offset_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
+            wrench + NW*i : NULL, A + NV*i, lambda + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6715,8 +6785,8 @@ size_t fivebar_offset_complete_acceleration_batch(const fivebar_offset_model *mo
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, wrench ?
-            wrench + 3*i : NULL, completed + 3*i);
+        const int code = fivebar_offset_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench
+            ? wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6737,8 +6807,8 @@ size_t fivebar_offset_leg_reactions_batch(const fivebar_offset_model *model, siz
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_leg_reactions(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench +
-            3*i : NULL, forces + 6*i);
+        const int code = fivebar_offset_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
+            + NW*i : NULL, forces + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6758,7 +6828,7 @@ size_t fivebar_offset_energy_batch(const fivebar_offset_model *model, size_t n, 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_energy(model, X + 3*i, V + 3*i, kinetic + 1*i, potential + 1*i);
+        const int code = fivebar_offset_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6777,7 +6847,7 @@ size_t fivebar_offset_condition_batch(const fivebar_offset_model *model, size_t 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_condition(model, X + 3*i, sigma + 2*i, legs + 2*i);
+        const int code = fivebar_offset_condition(model, X + NQ*i, sigma + 2*i, legs + 2*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6797,7 +6867,7 @@ size_t fivebar_offset_condition_constrained_batch(const fivebar_offset_model *mo
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_condition_constrained(model, X + 3*i, sigma + 3*i, legs + 2*i);
+        const int code = fivebar_offset_condition_constrained(model, X + NQ*i, sigma + 3*i, legs + 2*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6817,7 +6887,7 @@ size_t fivebar_offset_forward_kinematics_batch(const fivebar_offset_model *model
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_forward_kinematics(model, q_actuated + 2*i, X0 + 3*i, X + 3*i);
+        const int code = fivebar_offset_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6836,7 +6906,7 @@ size_t fivebar_offset_project_batch(const fivebar_offset_model *model, size_t n,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_project(model, X + 3*i, projected + 3*i);
+        const int code = fivebar_offset_project(model, X + NQ*i, projected + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6858,7 +6928,7 @@ size_t fivebar_offset_dissipation_batch(const fivebar_offset_model *model, size_
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_dissipation(model, X + 3*i, V + 3*i, dissipation + 1*i);
+        const int code = fivebar_offset_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6879,16 +6949,16 @@ size_t fivebar_offset_momentum_batch(const fivebar_offset_model *model, size_t n
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_lanes(model, X + 3*i, V + 3*i, momentum + 3*i, codes);
+        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_momentum(model, X + 3*(i + k), V + 3*(i + k), momentum + 3*(i + k));
+                codes[k] = fivebar_offset_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_momentum(model, X + 3*i, V + 3*i, momentum + 3*i);
+        const int code = fivebar_offset_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6908,16 +6978,16 @@ size_t fivebar_offset_joint_margins_batch(const fivebar_offset_model *model, siz
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_margins_lanes(model, X + 3*i, margins + 3*i, codes);
+        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_joint_margins(model, X + 3*(i + k), margins + 3*(i + k));
+                codes[k] = fivebar_offset_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_joint_margins(model, X + 3*i, margins + 3*i);
+        const int code = fivebar_offset_joint_margins(model, X + NQ*i, margins + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6937,16 +7007,16 @@ size_t fivebar_offset_within_limits_batch(const fivebar_offset_model *model, siz
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        within_limits_lanes(model, X + 3*i, within + 1*i, codes);
+        within_limits_lanes(model, X + NQ*i, within + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_within_limits(model, X + 3*(i + k), within + 1*(i + k));
+                codes[k] = fivebar_offset_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_within_limits(model, X + 3*i, within + 1*i);
+        const int code = fivebar_offset_within_limits(model, X + NQ*i, within + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6966,16 +7036,16 @@ size_t fivebar_offset_actuator_positions_batch(const fivebar_offset_model *model
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_lanes(model, X + 3*i, q + 2*i, codes);
+        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_actuator_positions(model, X + 3*(i + k), q + 2*(i + k));
+                codes[k] = fivebar_offset_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_actuator_positions(model, X + 3*i, q + 2*i);
+        const int code = fivebar_offset_actuator_positions(model, X + NQ*i, q + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6995,16 +7065,17 @@ size_t fivebar_offset_actuator_rates_batch(const fivebar_offset_model *model, si
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_lanes(model, X + 3*i, V + 3*i, rates + 2*i, codes);
+        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_actuator_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 2*(i + k));
+                codes[k] = fivebar_offset_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i +
+                    k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_actuator_rates(model, X + 3*i, V + 3*i, rates + 2*i);
+        const int code = fivebar_offset_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7026,18 +7097,18 @@ size_t fivebar_offset_actuator_accelerations_batch(const fivebar_offset_model *m
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 2*i, codes);
+        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_actuator_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i +
-                    k), accelerations + 2*(i + k));
+                codes[k] = fivebar_offset_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i
+                    + k), accelerations + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_actuator_accelerations(model, X + 3*i, V + 3*i, A + 3*i,
-            accelerations + 2*i);
+        const int code = fivebar_offset_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7058,17 +7129,17 @@ size_t fivebar_offset_power_batch(const fivebar_offset_model *model, size_t n, c
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_lanes(model, X + 3*i, V + 3*i, tau + 2*i, power + 1*i, codes);
+        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = fivebar_offset_power(model, X + 3*(i + k), V + 3*(i + k), tau + 2*(i + k), power + 1*(i
-                    + k));
+                codes[k] = fivebar_offset_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power +
+                    (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = fivebar_offset_power(model, X + 3*i, V + 3*i, tau + 2*i, power + 1*i);
+        const int code = fivebar_offset_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7086,7 +7157,7 @@ size_t fivebar_offset_rotation_batch(size_t n, const fivebar_offset_real *X, fiv
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_rotation(X + 3*i, R + 4*i);
+        const int code = fivebar_offset_rotation(X + NQ*i, R + 4*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7105,7 +7176,7 @@ size_t fivebar_offset_pose_batch(size_t n, const fivebar_offset_real *t, const f
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_pose(t + 2*i, R + 4*i, X + 3*i);
+        const int code = fivebar_offset_pose(t + 2*i, R + 4*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7124,7 +7195,7 @@ size_t fivebar_offset_X_dot_batch(size_t n, const fivebar_offset_real *X, const
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_X_dot(X + 3*i, V + 3*i, X_dot + 3*i);
+        const int code = fivebar_offset_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7143,7 +7214,7 @@ size_t fivebar_offset_retract_batch(size_t n, const fivebar_offset_real *X, cons
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_retract(X + 3*i, step + 3*i, X_moved + 3*i);
+        const int code = fivebar_offset_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7162,7 +7233,7 @@ size_t fivebar_offset_difference_batch(size_t n, const fivebar_offset_real *X0, 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_difference(X0 + 3*i, X1 + 3*i, step + 3*i);
+        const int code = fivebar_offset_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7181,7 +7252,7 @@ size_t fivebar_offset_interpolate_batch(size_t n, const fivebar_offset_real *X0,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = fivebar_offset_interpolate(X0 + 3*i, X1 + 3*i, s + 1*i, X + 3*i);
+        const int code = fivebar_offset_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

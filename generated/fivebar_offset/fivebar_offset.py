@@ -97,7 +97,7 @@ _SHAPES = {  # of the arrays that functions give
     "qdd": (3,),
     "constraints": (1,),
     "leg_force": (2, 3),
-    "drive": (2, 3),
+    "actuator": (2, 3),
     "constraint_direction": (1, 3),
     "potential": (1,),
     "lengths": (2,),
@@ -151,7 +151,7 @@ _leg_force_crank = (
     [0],
     [1],
 )
-_drive_crank = (
+_actuator_crank = (
     [0],
     [1],
 )
@@ -163,7 +163,7 @@ _leg_force_rrr = (
     [3],
     [4],
 )
-_drive_rrr = (
+_actuator_rrr = (
     [3],
     [4],
 )
@@ -582,14 +582,14 @@ def _prepare(p):
     # (crank-root_1) amplitude: off the manifold the nearest angle is taken
     crank_root_1_t = crank_size*crank_size*crank_size_t_2
     inv_crank_root_1_t = 1.0/crank_root_1_t
-    # (crank-n_c) unit vector that the leg's freedoms leave out
+    # (crank-n_c) direction of the constraint force
     crank_n_c_in_axes1_x = -crank_platform_joint_offset_x/(sqrt(crank_size_t))
     # (crank-w_1) reciprocal vector 1
     crank_w_1_in_axes1_y = 1.0/crank_platform_joint_offset_x
     # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
     crank_mu_1_t = crank_base_frame_xx*gravity_x + crank_base_frame_yx*gravity_y
     crank_mu_1_t_2 = crank_base_frame_xy*gravity_x + crank_base_frame_yy*gravity_y
-    # (crank-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (crank-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
     crank_d_G_in_axes1_yy = crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*crank_w_1_in_axes1_y
     # (potential) potential energy
     crank_potential_t = crank_base_point_x*crank_link1_mass
@@ -643,7 +643,7 @@ def _prepare(p):
     # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
     rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
     rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
-    # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
     inv_rrr_rho2_1_t = 1.0/rrr_rho2_1_t
     inv_rrr_size = 1.0/rrr_size
     # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
@@ -942,50 +942,41 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
+_BLOCK = 4096  # states
 _SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
-    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    """Prepared values of a function, and for each loop over legs (leg, its values): floats."""
     if name not in p._cache:
         shared, loops = p._prepared()[name]
-        rows, columns = [], []
+        rows = []
         for count, values in loops:
-            table = [np.broadcast_to(v, count) for v in values]
-            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
-            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
-        p._cache[name] = tuple(map(float, shared)), rows, columns
+            table = [np.broadcast_to(v, count).tolist() for v in values]
+            rows.append([(leg, tuple(v[leg] for v in table)) for leg in range(count)])
+        p._cache[name] = tuple(map(float, shared)), rows
     return p._cache[name]
-
-
-def _sqrt(x):
-    return x**0.5 if x >= 0.0 else np.nan
 
 
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
-    sqrt = staticmethod(_sqrt)
+    sqrt = staticmethod(math.sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda leg, good: good)
 
-    def __init__(self, p, states):
+    def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)[:2]
+        return _constants(self.p, name)
 
     def zeros(self, name):
         return [0.0] * math.prod(_SHAPES[name])
-
-    def added(self, sums, leg, terms):
-        """Sums over the legs so far."""
-        return [a + b for a, b in zip(sums, terms)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -997,7 +988,7 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, ValueError):
             ok = False
         if ok and all(all(map(math.isfinite, array)) for array in arrays):
             return arrays
@@ -1005,54 +996,66 @@ class _Floats:
 
 
 class _Arrays:
-    """Functions of many states at once: arrays (states,), and (legs, states)."""
+    """Functions of many states at once, in arrays (states,).
+
+    Attributes:
+        kept: replays, by their place among those of a block, for other blocks of the same size;
+            None where there are too few states for it to pay to record.
+    """
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
-    def __init__(self, p, states):
-        self.p, self.states = p, states
+    def __init__(self, p, states, kept=None):
+        self.p, self.states, self.kept, self.done = p, states, kept, 0
 
     def constants(self, name):
-        """Shared values, and (all legs, their values) once for each loop."""
-        shared, _, columns = _constants(self.p, name)
-        return shared, columns
+        """Shared values, and (leg, its values) for every leg of each loop.
+
+        As arrays without dimensions: beside arrays they are faster than floats.
+        """
+        if (name, "arrays") not in self.p._cache:
+            shared, loops = _constants(self.p, name)
+            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
+            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
+        return self.p._cache[name, "arrays"]
 
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, legs, good):
-        """Whether it holds for all legs."""
-        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
-
-    def added(self, sums, legs, terms):
-        """Sums over the legs, all at once."""
-        shape = (legs.stop, self.states)
-        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+    def computed(self, function, names, vectors):
+        """Flags and arrays (*shape, states) of a function."""
+        if self.kept is None:
+            flags, arrays = function(self, *vectors)
+        else:
+            if self.done not in self.kept:
+                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+            flags, arrays = self.kept[self.done].run(vectors)
+            self.done += 1
+        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = function(self, *vectors)
-        for a in arrays:
-            ok = ok & np.isfinite(a).all(axis=0)
+        ok, arrays = self.computed(function, names, vectors)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
-                a[:, ~ok] = np.nan
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+                a[..., ~ok] = np.nan
+        return arrays
 
 
 class _Judged(_Arrays):
     """The same, and why a state is impossible."""
 
-    def __init__(self, p, states):
-        super().__init__(p, states)
+    def __init__(self, p, states, kept=None):
+        super().__init__(p, states, kept)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = function(self, *vectors)
+        (valid, reached, clear), arrays = self.computed(function, names, vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            self.failed[code] |= np.logical_not(good)
+        return arrays
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1064,9 +1067,9 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _mode(p, states):
+def _mode(p, states, kept=None):
     """The faster way for so many states."""
-    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
@@ -1099,26 +1102,27 @@ def _one(steps, p, given, shapes, read, unbounded):
 
 
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
-    """Results at many states, block by block."""
+    """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
+    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
-    if count > _BLOCK:
+    if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
         # of intermediate arrays from block to block instead of giving its pages back.
         np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
-        for first in range(0, max(count, 1), _BLOCK):
-            block = slice(first, min(first + _BLOCK, count))
+        for stop in (*range(size, count, max(size, 1)), count):
+            block = slice(stop - size, stop)
             states = [_states_last(v[block]) for v in flat]
-            m, good = mode(p, block.stop - first), possible[block]
+            m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
-            _all_finite(compress(states, read), good)
+            good &= _finite(compress(states, read), size)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
+            good &= _finite([np.minimum(a, 0.0) for a in found] if unbounded else found, size)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1135,10 +1139,194 @@ def _states_last(a):
     return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
 
 
-def _all_finite(arrays, good):
-    """Clear the flags of states in which some entry is not finite."""
-    for a in arrays:
-        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+def _finite(arrays, states):
+    """In which states all entries of arrays (*shape, states) are finite."""
+    flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
+    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    if not np.all(good):  # or the sum is too large
+        good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
+    return good
+
+
+def _least(x, y, out):
+    return np.minimum(x, y, out=out)
+
+
+def _both(operation):
+    """An operation of recorded values, and the same with its operands the other way round."""
+    return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
+
+
+class _Recorded:
+    """A value of a function that runs to be recorded."""
+
+    def __init__(self, record, number):
+        self.record, self.number = record, number
+
+    __add__, __radd__ = _both(np.add)
+    __sub__, __rsub__ = _both(np.subtract)
+    __mul__, __rmul__ = _both(np.multiply)
+    __truediv__, __rtruediv__ = _both(np.divide)
+    __and__, __rand__ = _both(np.logical_and)
+    __gt__, __lt__ = _both(np.greater)
+    __ge__, __le__ = _both(np.greater_equal)
+
+    def __neg__(self):
+        return self.record.made(np.negative, self)
+
+    def __abs__(self):
+        return self.record.made(np.absolute, self)
+
+
+class _Record:
+    """The operations of a function, recorded by running it, and where their results stand.
+
+    Results share arrays: what is read for the last time makes room for the next, so that a few
+    arrays do, which stay in the processor's cache.
+
+    Attributes:
+        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
+        steps: (operation, numbers of its operands and of its result).
+        slots: number of a result -> (kind of array or "out", place).
+        counts: how many arrays there are of every kind.
+    """
+
+    def __init__(self, p, function, sizes):
+        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
+        self.constant, self.literals = [], {}
+        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
+        flags, arrays = function(self, *self.inputs)
+        self.is_judged = isinstance(flags, tuple)
+        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes = [len(array) for array in arrays]
+        for place, value in enumerate(v for array in arrays for v in array):
+            self.store(self.number(value), place)
+        self.counts = self.share()
+
+    # ---- the mode in which the function runs ----
+
+    def sqrt(self, x):
+        return self.made(np.sqrt, x)
+
+    def sin(self, x):
+        return self.made(np.sin, x)
+
+    def cos(self, x):
+        return self.made(np.cos, x)
+
+    def atan2(self, y, x):
+        return self.made(np.arctan2, y, x)
+
+    def least(self, x, y):
+        return self.made(_least, x, y)
+
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        self.name, (shared, loops) = name, _constants(self.p, name)
+        shared = self.named(shared)
+        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+
+    # ---- what is recorded ----
+
+    def named(self, values):
+        """Values for constants."""
+        found = [self.value("one") for _ in values]
+        self.constant += [v.number for v in found]
+        return found
+
+    def value(self, kind):
+        self.kinds.append(kind)
+        return _Recorded(self, len(self.kinds) - 1)
+
+    def number(self, value):
+        """Number of a value, which may be a literal."""
+        if isinstance(value, _Recorded):
+            return value.number
+        if value not in self.literals:
+            self.literals[value] = self.value("one").number
+        return self.literals[value]
+
+    def made(self, operation, *operands):
+        """The result of an operation."""
+        numbers = [self.number(operand) for operand in operands]
+        if all(self.kinds[n] == "one" for n in numbers):
+            kind = "one"
+        else:
+            kind = "flag" if operation in _OF_FLAGS else "state"
+        result = self.value(kind)
+        self.steps.append((operation, [*numbers, result.number]))
+        return result
+
+    def store(self, number, place):
+        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
+        if self.kinds[number] != "state" or number in self.slots:
+            copy = self.value("state").number
+            self.steps.append((np.positive, [number, copy]))
+            number = copy
+        self.slots[number] = "out", place
+
+    def share(self):
+        """Give results their places; how many there are of each kind."""
+        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
+        last.update(dict.fromkeys(self.flags, len(self.steps)))
+        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
+        for k, (_, (*operands, result)) in enumerate(self.steps):
+            for n in dict.fromkeys(operands):
+                kind, place = self.slots.get(n, ("given", 0))
+                if last[n] == k and kind in free:
+                    free[kind].append(place)
+            if result not in self.slots:
+                kind = self.kinds[result]
+                if not free[kind]:
+                    free[kind].append(counts[kind])
+                    counts[kind] += 1
+                self.slots[result] = kind, free[kind].pop()
+        return counts
+
+
+_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_RECORDS = {}  # by function
+
+
+class _Replay:
+    """A record on arrays of so many states, which are made once."""
+
+    def __init__(self, p, function, sizes, states):
+        if function not in _RECORDS:
+            _RECORDS[function] = _Record(p, function, sizes)
+        r = _RECORDS[function]
+        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
+        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
+        made["out"] = _rows(sum(r.sizes), states)
+        self.inputs = [_rows(size, states) for size in sizes]
+        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        at = {number: np.array(value) for value, number in r.literals.items()}
+        for values, given in zip(r.inputs, self.inputs):
+            at |= {v.number: row for v, row in zip(values, given)}
+        if r.name is not None:
+            shared, loops = _constants(p, r.name)
+            values = sum((k for legs in loops for _, k in legs), shared)
+            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
+        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
+        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
+        flags = [at[n] for n in r.flags]
+        self.flags = flags if r.is_judged else flags[0]
+
+    def run(self, vectors):
+        """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
+        for rows, vector in zip(self.inputs, vectors):
+            rows[:] = vector
+        for operation, operands in self.steps:
+            operation(*operands)
+        return self.flags, self.arrays
+
+
+def _rows(count, states, kind=float):
+    """Rows of so many states, a cache line apart from each other."""
+    return np.empty((count, states + 8), dtype=kind)[:, :states]
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1440,7 +1628,10 @@ def _run_dynamics(m, X, V):
     Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
-    sums = [0.0] * 9
+    (
+    M_tt_crank_xx, M_tt_crank_xy, M_tt_crank_yy, M_ta_crank_xz, M_ta_crank_yz, M_aa_crank_zz,
+        Z_t_crank_x, Z_t_crank_y, Z_a_crank_z,
+    ) = [0.0] * 9
     for leg, k in legs[0]:
         (
         crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
@@ -1475,7 +1666,7 @@ def _run_dynamics(m, X, V):
         crank_S_dot_in_axes1_y = (
         axis_x_crank_axes1_x*crank_S_dot_y + axis_y_crank_axes1_x*crank_S_dot_x
         )
-        # (crank-n_c) unit vector that the leg's freedoms leave out
+        # (crank-n_c) direction of the constraint force
         crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
         crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x
         # (crank-w_1) reciprocal vector 1
@@ -1496,7 +1687,7 @@ def _run_dynamics(m, X, V):
             axis_x_crank_axes1_x*crank_u_1_t) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 -
             crank_mu_1_t*crank_s_1)
         )
-        # (crank-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (crank-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y
         # (crank-Q) inertia of the leg at the connection point, without the mass gathered there
         crank_Q_t = axis_y_crank_axes1_x*crank_d_G_in_axes1_yy
@@ -1519,17 +1710,27 @@ def _run_dynamics(m, X, V):
         crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y
         # (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         crank_gamma_c1 = crank_n_c_in_axes1_x*crank_rel_o_in_axes1_x
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        sums = m.added(sums, leg, (
-        crank_Q_xx, crank_Q_xy, crank_Q_yy, crank_M_ta_t, crank_M_ta_t_2, crank_M_aa_t,
-            crank_U_x, crank_U_y, crank_Z_a_t,
-        ))
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
+        # (M_tt) translational block of M
+        M_tt_crank_xx += crank_Q_xx
+        M_tt_crank_xy += crank_Q_xy
+        M_tt_crank_yy += crank_Q_yy
+        # (M_ta) coupling block of M
+        M_ta_crank_xz += crank_M_ta_t
+        M_ta_crank_yz += crank_M_ta_t_2
+        # (M_aa) rotational block of M
+        M_aa_crank_zz += crank_M_aa_t
+        # (Z_t) translational part of Z
+        Z_t_crank_x += crank_U_x
+        Z_t_crank_y += crank_U_y
+        # (Z_a) rotational part of Z
+        Z_a_crank_z += crank_Z_a_t
         # (crank-w_1) reciprocal vector 1
         out_H[_H_crank[0][leg]] = crank_w_1_x
         out_H[_H_crank[1][leg]] = crank_w_1_y
         # (crank-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_crank[2][leg]] = crank_H_a_1_z
-        # (crank-n_c) unit vector that the leg's freedoms leave out
+        # (crank-n_c) direction of the constraint force
         out_Hk[_Hk_crank[0][leg]] = crank_n_c_x
         out_Hk[_Hk_crank[1][leg]] = crank_n_c_y
         # (crank-Hk_a_1) moment of the column's unit force about the platform origin
@@ -1537,10 +1738,9 @@ def _run_dynamics(m, X, V):
         # (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_crank[0][leg]] = crank_gamma_c1
     (
-    M_tt_crank_xx, M_tt_crank_xy, M_tt_crank_yy, M_ta_crank_xz, M_ta_crank_yz, M_aa_crank_zz,
-        Z_t_crank_x, Z_t_crank_y, Z_a_crank_z,
-    ) = sums
-    sums = [0.0] * 9
+    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz, Z_t_rrr_x,
+        Z_t_rrr_y, Z_a_rrr_z,
+    ) = [0.0] * 9
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz,
@@ -1668,7 +1868,7 @@ def _run_dynamics(m, X, V):
         rrr_d_Gamma_1_in_axes2_x = (
         rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
-        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
@@ -1709,22 +1909,28 @@ def _run_dynamics(m, X, V):
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
-        sums = m.added(sums, leg, (
-        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
-            rrr_Z_a_t,
-        ))
+        # (M_tt) translational block of M
+        M_tt_rrr_xx += rrr_Q_xx
+        M_tt_rrr_xy += rrr_Q_xy
+        M_tt_rrr_yy += rrr_Q_yy
+        # (M_ta) coupling block of M
+        M_ta_rrr_xz += rrr_M_ta_t
+        M_ta_rrr_yz += rrr_M_ta_t_2
+        # (M_aa) rotational block of M
+        M_aa_rrr_zz += rrr_M_aa_t
+        # (Z_t) translational part of Z
+        Z_t_rrr_x += rrr_U_x
+        Z_t_rrr_y += rrr_U_y
+        # (Z_a) rotational part of Z
+        Z_a_rrr_z += rrr_Z_a_t
         # (rrr-w_1) reciprocal vector 1
         out_H[_H_rrr[0][leg]] = rrr_w_1_x
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
-    (
-    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz, Z_t_rrr_x,
-        Z_t_rrr_y, Z_a_rrr_z,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_crank_xx + M_tt_rrr_xx + m_star
     M_tt_xy = M_tt_crank_xy + M_tt_rrr_xy
@@ -1779,7 +1985,9 @@ def _run_M(m, X):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
-    sums = [0.0] * 6
+    (
+    M_tt_crank_xx, M_tt_crank_xy, M_tt_crank_yy, M_ta_crank_xz, M_ta_crank_yz, M_aa_crank_zz,
+    ) = [0.0] * 6
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
@@ -1815,14 +2023,17 @@ def _run_M(m, X):
         crank_M_ta_t_2 = crank_Q_yy*crank_q_x - crank_Q_xy*crank_q_y
         # (M_aa) rotational block of M
         crank_M_aa_t = crank_M_ta_t_2*crank_q_x - crank_M_ta_t*crank_q_y
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        sums = m.added(sums, leg, (
-        crank_Q_xx, crank_Q_xy, crank_Q_yy, crank_M_ta_t, crank_M_ta_t_2, crank_M_aa_t,
-        ))
-    (
-    M_tt_crank_xx, M_tt_crank_xy, M_tt_crank_yy, M_ta_crank_xz, M_ta_crank_yz, M_aa_crank_zz,
-    ) = sums
-    sums = [0.0] * 6
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
+        # (M_tt) translational block of M
+        M_tt_crank_xx += crank_Q_xx
+        M_tt_crank_xy += crank_Q_xy
+        M_tt_crank_yy += crank_Q_yy
+        # (M_ta) coupling block of M
+        M_ta_crank_xz += crank_M_ta_t
+        M_ta_crank_yz += crank_M_ta_t_2
+        # (M_aa) rotational block of M
+        M_aa_crank_zz += crank_M_aa_t
+    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz = [0.0] * 6
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
@@ -1913,13 +2124,18 @@ def _run_M(m, X):
         # (M_aa) rotational block of M
         rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
-        sums = m.added(sums, leg, (
-        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
-        ))
-    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz = sums
+        # (M_tt) translational block of M
+        M_tt_rrr_xx += rrr_Q_xx
+        M_tt_rrr_xy += rrr_Q_xy
+        M_tt_rrr_yy += rrr_Q_yy
+        # (M_ta) coupling block of M
+        M_ta_rrr_xz += rrr_M_ta_t
+        M_ta_rrr_yz += rrr_M_ta_t_2
+        # (M_aa) rotational block of M
+        M_aa_rrr_zz += rrr_M_aa_t
     # (M_tt) translational block of M
     M_tt_xx = M_tt_crank_xx + M_tt_rrr_xx + m_star
     M_tt_xy = M_tt_crank_xy + M_tt_rrr_xy
@@ -1978,7 +2194,7 @@ def _run_Z(m, X, V):
     Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
-    sums = [0.0] * 3
+    Z_t_crank_x, Z_t_crank_y, Z_a_crank_z = [0.0] * 3
     for leg, k in legs[0]:
         (
         crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
@@ -2012,19 +2228,20 @@ def _run_Z(m, X, V):
             - axis_y_crank_axes1_x*crank_q_x*omega_z*omega_z) -
             crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*crank_s_1)
         )
-        # (crank-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (crank-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y
         # (crank-U) velocity and gravity terms of the leg force
         crank_U_x = axis_y_crank_axes1_x*crank_G_o_in_axes1_y
         crank_U_y = axis_x_crank_axes1_x*crank_G_o_in_axes1_y
         # (Z_a) rotational part of Z
         crank_Z_a_t = crank_U_y*crank_q_x - crank_U_x*crank_q_y
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        sums = m.added(sums, leg, (
-        crank_U_x, crank_U_y, crank_Z_a_t,
-        ))
-    Z_t_crank_x, Z_t_crank_y, Z_a_crank_z = sums
-    sums = [0.0] * 3
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
+        # (Z_t) translational part of Z
+        Z_t_crank_x += crank_U_x
+        Z_t_crank_y += crank_U_y
+        # (Z_a) rotational part of Z
+        Z_a_crank_z += crank_Z_a_t
+    Z_t_rrr_x, Z_t_rrr_y, Z_a_rrr_z = [0.0] * 3
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
@@ -2138,7 +2355,7 @@ def _run_Z(m, X, V):
         )
         # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
-        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
@@ -2155,13 +2372,14 @@ def _run_Z(m, X, V):
         # (Z_a) rotational part of Z
         rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
-        sums = m.added(sums, leg, (
-        rrr_U_x, rrr_U_y, rrr_Z_a_t,
-        ))
-    Z_t_rrr_x, Z_t_rrr_y, Z_a_rrr_z = sums
+        # (Z_t) translational part of Z
+        Z_t_rrr_x += rrr_U_x
+        Z_t_rrr_y += rrr_U_y
+        # (Z_a) rotational part of Z
+        Z_a_rrr_z += rrr_Z_a_t
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_crank_x + Z_t_rrr_x
     Z_t_y = Z_p_y + Z_t_crank_y + Z_t_rrr_y
@@ -2223,7 +2441,7 @@ def _run_H(m, X):
         )
         # (crank-H_a_1) moment of the column's unit force about the platform origin
         crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
         # (crank-w_1) reciprocal vector 1
         out_H[_H_crank[0][leg]] = crank_w_1_x
         out_H[_H_crank[1][leg]] = crank_w_1_y
@@ -2289,8 +2507,8 @@ def _run_H(m, X):
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-w_1) reciprocal vector 1
         out_H[_H_rrr[0][leg]] = rrr_w_1_x
@@ -2339,7 +2557,7 @@ def _run_Hk(m, X):
         crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
-        # (crank-n_c) unit vector that the leg's freedoms leave out
+        # (crank-n_c) direction of the constraint force
         crank_n_c_x = (
         crank_n_c_in_axes1_x*(crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1)
         )
@@ -2348,8 +2566,8 @@ def _run_Hk(m, X):
         )
         # (crank-Hk_a_1) moment of the column's unit force about the platform origin
         crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        # (crank-n_c) unit vector that the leg's freedoms leave out
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
+        # (crank-n_c) direction of the constraint force
         out_Hk[_Hk_crank[0][leg]] = crank_n_c_x
         out_Hk[_Hk_crank[1][leg]] = crank_n_c_y
         # (crank-Hk_a_1) moment of the column's unit force about the platform origin
@@ -2421,7 +2639,7 @@ def _run_constraint_bias(m, X, V):
         )
         # (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         crank_gamma_c1 = crank_n_c_in_axes1_x*crank_rel_o_in_axes1_x
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
         # (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_crank[0][leg]] = crank_gamma_c1
     return ok, (out_constraint_bias,)
@@ -2473,7 +2691,7 @@ def _run_required(m, X, V, A):
     f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
     # (mu_p) inertia moment of the platform less that of its weight
     mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
-    sums = [0.0] * 3
+    R_t_crank_x, R_t_crank_y, R_a_crank_z = [0.0] * 3
     for leg, k in legs[0]:
         (
         crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
@@ -2498,7 +2716,7 @@ def _run_required(m, X, V, A):
         crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
-        # (crank-n_c) unit vector that the leg's freedoms leave out
+        # (crank-n_c) direction of the constraint force
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
         crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
@@ -2519,7 +2737,7 @@ def _run_required(m, X, V, A):
             axis_y_crank_axes1_x*crank_S_ddot_x) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2
             - crank_mu_1_t*crank_s_1)
         )
-        # (crank-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (crank-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y
         # (crank-c) leg force on the platform without actuation and without the mass at the connection point
         crank_c_t = axis_y_crank_axes1_x*crank_G_in_axes1_y
@@ -2530,22 +2748,23 @@ def _run_required(m, X, V, A):
         crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x
         # (crank-Hk_a_1) moment of the column's unit force about the platform origin
         crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        sums = m.added(sums, leg, (
-        crank_c_t, crank_c_t_2, crank_R_a_t,
-        ))
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
+        # (R_t) force that actuators and external wrench must give
+        R_t_crank_x += crank_c_t
+        R_t_crank_y += crank_c_t_2
+        # (R_a) moment that actuators and external wrench must give
+        R_a_crank_z += crank_R_a_t
         # (crank-w_1) reciprocal vector 1
         out_H[_H_crank[0][leg]] = crank_w_1_x
         out_H[_H_crank[1][leg]] = crank_w_1_y
         # (crank-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_crank[2][leg]] = crank_H_a_1_z
-        # (crank-n_c) unit vector that the leg's freedoms leave out
+        # (crank-n_c) direction of the constraint force
         out_Hk[_Hk_crank[0][leg]] = crank_n_c_x
         out_Hk[_Hk_crank[1][leg]] = crank_n_c_y
         # (crank-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_crank[2][leg]] = crank_Hk_a_1_z
-    R_t_crank_x, R_t_crank_y, R_a_crank_z = sums
-    sums = [0.0] * 3
+    R_t_t, R_t_t_2, R_a_rrr_z = [0.0] * 3
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
@@ -2664,7 +2883,7 @@ def _run_required(m, X, V, A):
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
         rrr_c_in_axes2_x = (
@@ -2682,18 +2901,19 @@ def _run_required(m, X, V, A):
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
-        sums = m.added(sums, leg, (
-        rrr_c_x, rrr_c_y, rrr_R_a_t,
-        ))
+        # (R_t) force that actuators and external wrench must give
+        R_t_t += rrr_c_x
+        R_t_t_2 += rrr_c_y
+        # (R_a) moment that actuators and external wrench must give
+        R_a_rrr_z += rrr_R_a_t
         # (rrr-w_1) reciprocal vector 1
         out_H[_H_rrr[0][leg]] = rrr_w_1_x
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
-    R_t_t, R_t_t_2, R_a_rrr_z = sums
     # (R_t) force that actuators and external wrench must give
     R_t_x = R_t_crank_x + f_p_x - R_t_t
     R_t_y = R_t_crank_y + f_p_y - R_t_t_2
@@ -2749,7 +2969,7 @@ def _run_inverse_kinematics(m, X):
         atan2(crank_platform_joint_offset_x*crank_q_1_t*crank_rho2_1_t,
             crank_platform_joint_offset_x*crank_q_1_t*crank_rho2_1_t_2)
         )
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
         # (crank-q_1) displacement of joint 1
         out_q[_q_crank[0][leg]] = crank_q_1
     for leg, k in legs[1]:
@@ -2792,10 +3012,7 @@ def _run_inverse_kinematics(m, X):
         atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
             inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
         )
-        ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0))
-        )
+        ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
         # (rrr-q_2) displacement of joint 2
@@ -2858,7 +3075,7 @@ def _run_joint_rates(m, X, V):
             crank_base_frame_xx*crank_s_1) + crank_S_dot_y*(crank_base_frame_yy*crank_c_1 -
             crank_base_frame_yx*crank_s_1))
         )
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
         # (crank-qd_1) rate of joint 1
         out_qd[_qd_crank[0][leg]] = crank_qd_1
     for leg, k in legs[1]:
@@ -2925,8 +3142,8 @@ def _run_joint_rates(m, X, V):
             rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-qd_1) rate of joint 1
         out_qd[_qd_rrr[0][leg]] = rrr_qd_1
@@ -3000,7 +3217,7 @@ def _run_joint_accelerations(m, X, V, A):
             crank_base_frame_xx*crank_s_1) + crank_S_ddot_y*(crank_base_frame_yy*crank_c_1 -
             crank_base_frame_yx*crank_s_1))
         )
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
         # (crank-qdd_1) acceleration of joint 1
         out_qdd[_qdd_crank[0][leg]] = crank_qdd_1
     for leg, k in legs[1]:
@@ -3097,8 +3314,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrr-qdd_2) acceleration of joint 2
         rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1_t
@@ -3143,15 +3360,15 @@ def _run_constraints(m, X):
         crank_rho2_1 = (
         crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        # (crank-phi_c1) distance by which the leg misses the platform, along a direction left out
+        # (crank-phi_c1) loop-closure residual along the constraint force
         crank_phi_c1_t = 1.0/(sqrt(crank_rho2_1))
         crank_phi_c1 = (
         crank_n_c_in_axes1_x*(crank_phi_c1_t*crank_platform_joint_offset_x*crank_rho2_1_t*crank_rho2_1_t
             + crank_phi_c1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2*crank_rho2_1_t_2 -
             crank_platform_joint_offset_x)
         )
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        # (crank-phi_c1) distance by which the leg misses the platform, along a direction left out
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
+        # (crank-phi_c1) loop-closure residual along the constraint force
         out_constraints[_constraints_crank[0][leg]] = crank_phi_c1
     return ok, (out_constraints,)
 
@@ -3187,7 +3404,7 @@ def _run_legs(m, X, V, A):
     alpha_z = A_2
     ok = True
     out_leg_force = m.zeros("leg_force")
-    out_drive = m.zeros("drive")
+    out_actuator = m.zeros("actuator")
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
@@ -3213,7 +3430,7 @@ def _run_legs(m, X, V, A):
         crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
-        # (crank-n_c) unit vector that the leg's freedoms leave out
+        # (crank-n_c) direction of the constraint force
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
         crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
@@ -3234,19 +3451,19 @@ def _run_legs(m, X, V, A):
             axis_y_crank_axes1_x*crank_S_ddot_x) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2
             - crank_mu_1_t*crank_s_1)
         )
-        # (crank-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (crank-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y
         # (crank-c) leg force on the platform without actuation and without the mass at the connection point
         crank_c_t = axis_y_crank_axes1_x*crank_G_in_axes1_y
         crank_c_t_2 = axis_x_crank_axes1_x*crank_G_in_axes1_y
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
         # (crank-c) leg force on the platform without actuation and without the mass at the connection point
         out_leg_force[_leg_force_crank[0][leg]] = -crank_c_t
         out_leg_force[_leg_force_crank[1][leg]] = -crank_c_t_2
         # (crank-w_1) reciprocal vector 1
-        out_drive[_drive_crank[0][leg]] = crank_w_1_x
-        out_drive[_drive_crank[1][leg]] = crank_w_1_y
-        # (crank-n_c) unit vector that the leg's freedoms leave out
+        out_actuator[_actuator_crank[0][leg]] = crank_w_1_x
+        out_actuator[_actuator_crank[1][leg]] = crank_w_1_y
+        # (crank-n_c) direction of the constraint force
         out_constraint_direction[_constraint_direction_crank[0][leg]] = crank_n_c_x
         out_constraint_direction[_constraint_direction_crank[1][leg]] = crank_n_c_y
     for leg, k in legs[1]:
@@ -3367,7 +3584,7 @@ def _run_legs(m, X, V, A):
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
         rrr_c_in_axes2_x = (
@@ -3388,16 +3605,16 @@ def _run_legs(m, X, V, A):
         axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x
         )
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_x
         out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_y
         # (rrr-w_1) reciprocal vector 1
-        out_drive[_drive_rrr[0][leg]] = rrr_w_1_x
-        out_drive[_drive_rrr[1][leg]] = rrr_w_1_y
-    return ok, (out_leg_force, out_drive, out_constraint_direction,)
+        out_actuator[_actuator_rrr[0][leg]] = rrr_w_1_x
+        out_actuator[_actuator_rrr[1][leg]] = rrr_w_1_y
+    return ok, (out_leg_force, out_actuator, out_constraint_direction,)
 
 
 # potential: 80 mul, 52 add, 2 div, 2 sqrt, 0 trig
@@ -3422,7 +3639,7 @@ def _run_potential(m, X):
     gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
         gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
     )
-    sums = [0.0] * 1
+    potential_crank, = [0.0] * 1
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
@@ -3456,12 +3673,10 @@ def _run_potential(m, X):
             crank_base_frame_xy*crank_potential_t_4) + gravity_y*(crank_potential_t_2 +
             crank_base_frame_yx*crank_potential_t_3 + crank_base_frame_yy*crank_potential_t_4)
         )
-        ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        sums = m.added(sums, leg, (
-        -crank_potential_t_5,
-        ))
-    potential_crank, = sums
-    sums = [0.0] * 1
+        ok = ok & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
+        # (potential) potential energy
+        potential_crank += -crank_potential_t_5
+    potential_t_2, = [0.0] * 1
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
@@ -3513,14 +3728,9 @@ def _run_potential(m, X):
             rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
             rrr_potential_t*rrr_s_1))
         )
-        ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0))
-        )
-        sums = m.added(sums, leg, (
-        rrr_potential_t_3,
-        ))
-    potential_t_2, = sums
+        ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
+        # (potential) potential energy
+        potential_t_2 += rrr_potential_t_3
     # (potential) potential energy
     potential = potential_crank - potential_t - potential_t_2
     # (potential) potential energy
@@ -3554,7 +3764,7 @@ def _run_condition(m, X):
     out_reach = m.zeros("reach")
     # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
-    sums = [0.0] * 1
+    spread_crank, = [0.0] * 1
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
@@ -3581,7 +3791,7 @@ def _run_condition(m, X):
         crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
         crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
-        # (crank-n_c) unit vector that the leg's freedoms leave out
+        # (crank-n_c) direction of the constraint force
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
         crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
@@ -3597,26 +3807,22 @@ def _run_condition(m, X):
         crank_spread_t = b_c_in_platform_x - crank_platform_point_x
         crank_spread_t_2 = b_c_in_platform_y - crank_platform_point_y
         crank_spread_t_3 = crank_spread_t*crank_spread_t + crank_spread_t_2*crank_spread_t_2
-        clear = (
-        clear & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        )
-        sums = m.added(sums, leg, (
-        crank_spread_t_3,
-        ))
+        clear = clear & (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t)
+        # (spread) rms distance of the platform points from their centroid
+        spread_crank += crank_spread_t_3
         # (crank-w_1) reciprocal vector 1
         out_H[_H_crank[0][leg]] = crank_w_1_x
         out_H[_H_crank[1][leg]] = crank_w_1_y
         # (crank-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_crank[2][leg]] = crank_H_a_1_z
-        # (crank-n_c) unit vector that the leg's freedoms leave out
+        # (crank-n_c) direction of the constraint force
         out_Hk[_Hk_crank[0][leg]] = crank_n_c_x
         out_Hk[_Hk_crank[1][leg]] = crank_n_c_y
         # (crank-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_crank[2][leg]] = crank_Hk_a_1_z
         # (crank-root_1) amplitude: off the manifold the nearest angle is taken
         out_pivots[_pivots_crank[0][leg]] = crank_pivot_root
-    spread_crank, = sums
-    sums = [0.0] * 1
+    spread_rrr, = [0.0] * 1
     for leg, k in legs[1]:
         (
         inv_rrr_rho2_1_t, inv_rrr_size, inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t,
@@ -3675,7 +3881,7 @@ def _run_condition(m, X):
         rrr_w_1_y = (
         -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
         )
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
         rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
         rrr_least_pivots = (
@@ -3688,22 +3894,20 @@ def _run_condition(m, X):
         rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y
         rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2
         clear = (
-        clear & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
-            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        clear & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
-        reached = reached & m.every(leg, (rrr_disc_1 >= 0.0))
-        sums = m.added(sums, leg, (
-        rrr_spread_t_3,
-        ))
+        reached = reached & (rrr_disc_1 >= 0.0)
+        # (spread) rms distance of the platform points from their centroid
+        spread_rrr += rrr_spread_t_3
         # (rrr-w_1) reciprocal vector 1
         out_H[_H_rrr[0][leg]] = rrr_w_1_x
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots
         out_reach[_reach_rrr[0][leg]] = rrr_disc_1
-    spread_rrr, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(0.5*spread_crank + 0.5*spread_rrr)
     # (spread) rms distance of the platform points from their centroid
@@ -3770,10 +3974,10 @@ def _steps_dynamics(m, X, V):
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    beside_3 = np.concatenate((H, Hk), axis=1)
-    solve_4 = _solve(beside_3, subtract_2)
-    tau, lambda_ = solve_4[:2], solve_4[2:]
+    subtract_1 = required - extend_1
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    solve_1 = _solve(beside_1, subtract_1)
+    tau, lambda_ = solve_1[:2], solve_1[2:]
     return (tau, lambda_,)
 
 
@@ -3782,14 +3986,14 @@ def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H, Hk, constraint_bias,
     ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
     times_1 = np.einsum("ijs,js->is", H, tau)
-    extend_2 = wrench
-    add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z
-    negative_5 = -constraint_bias
-    join_6 = np.concatenate((subtract_4, negative_5))
-    saddle_7 = _saddle(M, Hk)
-    solve_8 = _solve(saddle_7, join_6)
-    A, lambda_ = solve_8[:3], solve_8[3:]
+    extend_1 = wrench
+    add_1 = times_1 + extend_1
+    subtract_1 = add_1 - Z
+    negative_1 = -constraint_bias
+    join_1 = np.concatenate((subtract_1, negative_1))
+    saddle_1 = _saddle(M, Hk)
+    solve_1 = _solve(saddle_1, join_1)
+    A, lambda_ = solve_1[:3], solve_1[3:]
     return (A, lambda_,)
 
 
@@ -3801,15 +4005,15 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    beside_3 = np.concatenate((H, Hk), axis=1)
-    solve_4 = _solve(beside_3, subtract_2)
-    split_5, split_6 = solve_4[:2], solve_4[2:]
+    subtract_1 = required - extend_1
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    solve_1 = _solve(beside_1, subtract_1)
+    split_1, split_2 = solve_1[:2], solve_1[2:]
     (
-    leg_force, drive, constraint_direction,
-    ) = m.run(_run_legs, ("leg_force", "drive", "constraint_direction"), X, V, A)
-    add_forces_7 = _with_forces(leg_force, split_5, drive, [0, 1])
-    forces = _with_forces(add_forces_7, split_6, constraint_direction, [0])
+    leg_force, actuator, constraint_direction,
+    ) = m.run(_run_legs, ("leg_force", "actuator", "constraint_direction"), X, V, A)
+    add_forces_1 = _with_forces(leg_force, split_1, actuator, [0, 1])
+    forces = _with_forces(add_forces_1, split_2, constraint_direction, [0])
     return (forces,)
 
 
@@ -3832,8 +4036,8 @@ def _steps_condition(m, X, length):
     H, Hk, lengths, legs, reach,
     ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths, length)
-    divide_rows_2 = _rows_divided(H, choose_length_1, [2])
-    sigma = _singular_values(divide_rows_2)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [2])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
@@ -3842,20 +4046,20 @@ def _steps_condition_constrained(m, X, length):
     H, Hk, lengths, legs, reach,
     ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     beside_1 = np.concatenate((H, Hk), axis=1)
-    choose_length_2 = _chosen_length(lengths, length)
-    divide_rows_3 = _rows_divided(beside_1, choose_length_2, [2])
-    sigma = _singular_values(divide_rows_3)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_1 = _rows_divided(beside_1, choose_length_1, [2])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q[0:2]
-    subtract_2 = q_actuated - take_1
-    wrap_turns_3 = _wrapped(subtract_2, [0, 1])
+    subtract_1 = q_actuated - take_1
+    wrap_turns_1 = _wrapped(subtract_1, [0, 1])
     constraints, = m.run(_run_constraints, ("constraints",), X)
-    negative_4 = -constraints
-    gap = np.concatenate((wrap_turns_3, negative_4))
+    negative_1 = -constraints
+    gap = np.concatenate((wrap_turns_1, negative_1))
     return (gap,)
 
 
@@ -3945,8 +4149,8 @@ def _steps_rotation(m, X):
 
 def _steps_pose(m, t, R):
     angle_of_rotation_1 = _angle_of_rotation(R)
-    join_2 = np.concatenate((t, angle_of_rotation_1))
-    X = join_2
+    join_1 = np.concatenate((t, angle_of_rotation_1))
+    X = join_1
     return (X,)
 
 
@@ -3968,9 +4172,9 @@ def _steps_difference(m, X0, X1):
 
 def _steps_interpolate(m, X0, X1, s):
     subtract_1 = X1 - X0
-    wrap_turns_2 = _wrapped(subtract_1, [2])
-    scale_3 = wrap_turns_2 * s
-    X = X0 + scale_3
+    wrap_turns_1 = _wrapped(subtract_1, [2])
+    scale_1 = wrap_turns_1 * s
+    X = X0 + scale_1
     return (X,)
 
 

@@ -91,7 +91,7 @@ _SHAPES = {  # of the arrays that functions give
     "qd": (30,),
     "qdd": (30,),
     "leg_force": (6, 6),
-    "drive": (6, 6),
+    "actuator": (6, 6),
     "potential": (1,),
     "lengths": (2,),
     "pivots": (6,),
@@ -137,7 +137,7 @@ _leg_force_six_r = (
     [4, 10, 16, 22, 28, 34],
     [5, 11, 17, 23, 29, 35],
 )
-_drive_six_r = (
+_actuator_six_r = (
     [0, 6, 12, 18, 24, 30],
     [1, 7, 13, 19, 25, 31],
     [2, 8, 14, 20, 26, 32],
@@ -1309,50 +1309,41 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
+_BLOCK = 4096  # states
 _SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
-    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    """Prepared values of a function, and for each loop over legs (leg, its values): floats."""
     if name not in p._cache:
         shared, loops = p._prepared()[name]
-        rows, columns = [], []
+        rows = []
         for count, values in loops:
-            table = [np.broadcast_to(v, count) for v in values]
-            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
-            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
-        p._cache[name] = tuple(map(float, shared)), rows, columns
+            table = [np.broadcast_to(v, count).tolist() for v in values]
+            rows.append([(leg, tuple(v[leg] for v in table)) for leg in range(count)])
+        p._cache[name] = tuple(map(float, shared)), rows
     return p._cache[name]
-
-
-def _sqrt(x):
-    return x**0.5 if x >= 0.0 else np.nan
 
 
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
-    sqrt = staticmethod(_sqrt)
+    sqrt = staticmethod(math.sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda leg, good: good)
 
-    def __init__(self, p, states):
+    def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)[:2]
+        return _constants(self.p, name)
 
     def zeros(self, name):
         return [0.0] * math.prod(_SHAPES[name])
-
-    def added(self, sums, leg, terms):
-        """Sums over the legs so far."""
-        return [a + b for a, b in zip(sums, terms)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1364,7 +1355,7 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, ValueError):
             ok = False
         if ok and all(all(map(math.isfinite, array)) for array in arrays):
             return arrays
@@ -1372,54 +1363,66 @@ class _Floats:
 
 
 class _Arrays:
-    """Functions of many states at once: arrays (states,), and (legs, states)."""
+    """Functions of many states at once, in arrays (states,).
+
+    Attributes:
+        kept: replays, by their place among those of a block, for other blocks of the same size;
+            None where there are too few states for it to pay to record.
+    """
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
-    def __init__(self, p, states):
-        self.p, self.states = p, states
+    def __init__(self, p, states, kept=None):
+        self.p, self.states, self.kept, self.done = p, states, kept, 0
 
     def constants(self, name):
-        """Shared values, and (all legs, their values) once for each loop."""
-        shared, _, columns = _constants(self.p, name)
-        return shared, columns
+        """Shared values, and (leg, its values) for every leg of each loop.
+
+        As arrays without dimensions: beside arrays they are faster than floats.
+        """
+        if (name, "arrays") not in self.p._cache:
+            shared, loops = _constants(self.p, name)
+            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
+            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
+        return self.p._cache[name, "arrays"]
 
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, legs, good):
-        """Whether it holds for all legs."""
-        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
-
-    def added(self, sums, legs, terms):
-        """Sums over the legs, all at once."""
-        shape = (legs.stop, self.states)
-        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+    def computed(self, function, names, vectors):
+        """Flags and arrays (*shape, states) of a function."""
+        if self.kept is None:
+            flags, arrays = function(self, *vectors)
+        else:
+            if self.done not in self.kept:
+                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+            flags, arrays = self.kept[self.done].run(vectors)
+            self.done += 1
+        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = function(self, *vectors)
-        for a in arrays:
-            ok = ok & np.isfinite(a).all(axis=0)
+        ok, arrays = self.computed(function, names, vectors)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
-                a[:, ~ok] = np.nan
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+                a[..., ~ok] = np.nan
+        return arrays
 
 
 class _Judged(_Arrays):
     """The same, and why a state is impossible."""
 
-    def __init__(self, p, states):
-        super().__init__(p, states)
+    def __init__(self, p, states, kept=None):
+        super().__init__(p, states, kept)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = function(self, *vectors)
+        (valid, reached, clear), arrays = self.computed(function, names, vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            self.failed[code] |= np.logical_not(good)
+        return arrays
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1431,9 +1434,9 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _mode(p, states):
+def _mode(p, states, kept=None):
     """The faster way for so many states."""
-    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
@@ -1466,26 +1469,27 @@ def _one(steps, p, given, shapes, read, unbounded):
 
 
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
-    """Results at many states, block by block."""
+    """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
+    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
-    if count > _BLOCK:
+    if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
         # of intermediate arrays from block to block instead of giving its pages back.
         np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
-        for first in range(0, max(count, 1), _BLOCK):
-            block = slice(first, min(first + _BLOCK, count))
+        for stop in (*range(size, count, max(size, 1)), count):
+            block = slice(stop - size, stop)
             states = [_states_last(v[block]) for v in flat]
-            m, good = mode(p, block.stop - first), possible[block]
+            m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
-            _all_finite(compress(states, read), good)
+            good &= _finite(compress(states, read), size)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
+            good &= _finite([np.minimum(a, 0.0) for a in found] if unbounded else found, size)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1502,10 +1506,194 @@ def _states_last(a):
     return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
 
 
-def _all_finite(arrays, good):
-    """Clear the flags of states in which some entry is not finite."""
-    for a in arrays:
-        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+def _finite(arrays, states):
+    """In which states all entries of arrays (*shape, states) are finite."""
+    flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
+    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    if not np.all(good):  # or the sum is too large
+        good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
+    return good
+
+
+def _least(x, y, out):
+    return np.minimum(x, y, out=out)
+
+
+def _both(operation):
+    """An operation of recorded values, and the same with its operands the other way round."""
+    return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
+
+
+class _Recorded:
+    """A value of a function that runs to be recorded."""
+
+    def __init__(self, record, number):
+        self.record, self.number = record, number
+
+    __add__, __radd__ = _both(np.add)
+    __sub__, __rsub__ = _both(np.subtract)
+    __mul__, __rmul__ = _both(np.multiply)
+    __truediv__, __rtruediv__ = _both(np.divide)
+    __and__, __rand__ = _both(np.logical_and)
+    __gt__, __lt__ = _both(np.greater)
+    __ge__, __le__ = _both(np.greater_equal)
+
+    def __neg__(self):
+        return self.record.made(np.negative, self)
+
+    def __abs__(self):
+        return self.record.made(np.absolute, self)
+
+
+class _Record:
+    """The operations of a function, recorded by running it, and where their results stand.
+
+    Results share arrays: what is read for the last time makes room for the next, so that a few
+    arrays do, which stay in the processor's cache.
+
+    Attributes:
+        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
+        steps: (operation, numbers of its operands and of its result).
+        slots: number of a result -> (kind of array or "out", place).
+        counts: how many arrays there are of every kind.
+    """
+
+    def __init__(self, p, function, sizes):
+        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
+        self.constant, self.literals = [], {}
+        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
+        flags, arrays = function(self, *self.inputs)
+        self.is_judged = isinstance(flags, tuple)
+        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes = [len(array) for array in arrays]
+        for place, value in enumerate(v for array in arrays for v in array):
+            self.store(self.number(value), place)
+        self.counts = self.share()
+
+    # ---- the mode in which the function runs ----
+
+    def sqrt(self, x):
+        return self.made(np.sqrt, x)
+
+    def sin(self, x):
+        return self.made(np.sin, x)
+
+    def cos(self, x):
+        return self.made(np.cos, x)
+
+    def atan2(self, y, x):
+        return self.made(np.arctan2, y, x)
+
+    def least(self, x, y):
+        return self.made(_least, x, y)
+
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        self.name, (shared, loops) = name, _constants(self.p, name)
+        shared = self.named(shared)
+        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+
+    # ---- what is recorded ----
+
+    def named(self, values):
+        """Values for constants."""
+        found = [self.value("one") for _ in values]
+        self.constant += [v.number for v in found]
+        return found
+
+    def value(self, kind):
+        self.kinds.append(kind)
+        return _Recorded(self, len(self.kinds) - 1)
+
+    def number(self, value):
+        """Number of a value, which may be a literal."""
+        if isinstance(value, _Recorded):
+            return value.number
+        if value not in self.literals:
+            self.literals[value] = self.value("one").number
+        return self.literals[value]
+
+    def made(self, operation, *operands):
+        """The result of an operation."""
+        numbers = [self.number(operand) for operand in operands]
+        if all(self.kinds[n] == "one" for n in numbers):
+            kind = "one"
+        else:
+            kind = "flag" if operation in _OF_FLAGS else "state"
+        result = self.value(kind)
+        self.steps.append((operation, [*numbers, result.number]))
+        return result
+
+    def store(self, number, place):
+        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
+        if self.kinds[number] != "state" or number in self.slots:
+            copy = self.value("state").number
+            self.steps.append((np.positive, [number, copy]))
+            number = copy
+        self.slots[number] = "out", place
+
+    def share(self):
+        """Give results their places; how many there are of each kind."""
+        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
+        last.update(dict.fromkeys(self.flags, len(self.steps)))
+        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
+        for k, (_, (*operands, result)) in enumerate(self.steps):
+            for n in dict.fromkeys(operands):
+                kind, place = self.slots.get(n, ("given", 0))
+                if last[n] == k and kind in free:
+                    free[kind].append(place)
+            if result not in self.slots:
+                kind = self.kinds[result]
+                if not free[kind]:
+                    free[kind].append(counts[kind])
+                    counts[kind] += 1
+                self.slots[result] = kind, free[kind].pop()
+        return counts
+
+
+_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_RECORDS = {}  # by function
+
+
+class _Replay:
+    """A record on arrays of so many states, which are made once."""
+
+    def __init__(self, p, function, sizes, states):
+        if function not in _RECORDS:
+            _RECORDS[function] = _Record(p, function, sizes)
+        r = _RECORDS[function]
+        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
+        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
+        made["out"] = _rows(sum(r.sizes), states)
+        self.inputs = [_rows(size, states) for size in sizes]
+        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        at = {number: np.array(value) for value, number in r.literals.items()}
+        for values, given in zip(r.inputs, self.inputs):
+            at |= {v.number: row for v, row in zip(values, given)}
+        if r.name is not None:
+            shared, loops = _constants(p, r.name)
+            values = sum((k for legs in loops for _, k in legs), shared)
+            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
+        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
+        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
+        flags = [at[n] for n in r.flags]
+        self.flags = flags if r.is_judged else flags[0]
+
+    def run(self, vectors):
+        """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
+        for rows, vector in zip(self.inputs, vectors):
+            rows[:] = vector
+        for operation, operands in self.steps:
+            operation(*operands)
+        return self.flags, self.arrays
+
+
+def _rows(count, states, kind=float):
+    """Rows of so many states, a cache line apart from each other."""
+    return np.empty((count, states + 8), dtype=kind)[:, :states]
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1972,7 +2160,13 @@ def _run_dynamics(m, X, V, q):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 27
+    (
+    M_tt_six_r_xx, M_tt_xy, M_tt_xz, M_tt_six_r_yy, M_tt_yz, M_tt_six_r_zz, M_ta_xx,
+        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_t, M_ta_six_r_yz, M_ta_six_r_zx,
+        M_ta_six_r_zy, M_ta_zz, M_aa_six_r_xx, M_aa_six_r_xy, M_aa_six_r_xz, M_aa_six_r_yy,
+        M_aa_six_r_yz, M_aa_six_r_zz, Z_t_six_r_x, Z_t_six_r_y, Z_t_six_r_z, Z_a_six_r_x,
+        Z_a_six_r_y, Z_a_six_r_z,
+    ) = [0.0] * 27
     for leg, k in legs[0]:
         (
         six_r_J_1_in_spec1_xx, six_r_J_2_in_spec2_xx, six_r_J_2_in_spec2_xy,
@@ -3649,7 +3843,7 @@ def _run_dynamics(m, X, V, q):
             six_r_d_Gamma_1_t_4*six_r_w_1_t_70 + six_r_d_Gamma_1_t_5*six_r_w_1_t_82 +
             six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_y - six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_x
         )
-        # (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_dalpha_G_m1_in_axes5_x = (
         six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_x*six_r_m1_w_3 +
@@ -3681,7 +3875,7 @@ def _run_dynamics(m, X, V, q):
             axis_y_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_z
         )
-        # (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_d_G_m1_in_axes5_x = (
         six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2 + six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 +
             six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2
@@ -3712,7 +3906,7 @@ def _run_dynamics(m, X, V, q):
             axis_y_six_r_axes5_z*six_r_d_G_m1_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z
         )
-        # (six_r-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z
         six_r_G_m1_o_t_2 = (
         inv_six_r_w_1_t_28*(six_r_G_m1_o_t*six_r_w_1_t_15 - six_r_N_4_o_in_axes4_z)
@@ -3734,7 +3928,7 @@ def _run_dynamics(m, X, V, q):
         six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_31 + six_r_G_m1_o_t_3*six_r_w_1_t_53 +
             six_r_G_m1_o_t_4*six_r_w_1_t_71 - six_r_G_m1_o_t_5*six_r_m1_w_1_t)
         )
-        # (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_dalpha_G_m2_in_axes5_x = (
         six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1 +
             six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
@@ -3766,7 +3960,7 @@ def _run_dynamics(m, X, V, q):
             axis_y_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z
         )
-        # (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_d_G_m2_in_axes5_x = (
         six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1 + six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
             six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
@@ -3797,18 +3991,18 @@ def _run_dynamics(m, X, V, q):
             axis_y_six_r_axes5_z*six_r_d_G_m2_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z
         )
-        # (six_r-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m2_o_t = (
         six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_32 + six_r_G_m1_o_t_3*six_r_w_1_t_54 +
             six_r_G_m1_o_t_4*six_r_w_1_t_72 - six_r_G_m1_o_t*six_r_w_1_t_14 -
             six_r_G_m1_o_t_5*six_r_m2_w_1_t)
         )
-        # (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         six_r_d_G_m_xx = six_r_d_G_m1_x*six_r_n_m1_x + six_r_d_G_m2_x*six_r_n_m2_x
         six_r_d_G_m_xy = six_r_d_G_m1_y*six_r_n_m1_x + six_r_d_G_m2_y*six_r_n_m2_x
         six_r_d_G_m_xz = six_r_d_G_m1_z*six_r_n_m1_x + six_r_d_G_m2_z*six_r_n_m2_x
         six_r_d_G_m_yx = six_r_d_G_m1_x*six_r_n_m1_y + six_r_d_G_m2_x*six_r_n_m2_y
-        # (six_r-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*six_r_end_p1_in_axes5_y
         six_r_G_m_o_in_axes5_y = (
         six_r_G_m2_o_t*six_r_end_p1_in_axes5_z - six_r_G_m1_o_t_6*six_r_n_m1_in_axes5_y
@@ -4177,19 +4371,42 @@ def _run_dynamics(m, X, V, q):
         six_r_H_a_2_y = six_r_o_2_y + six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z
         six_r_H_a_2_z = six_r_o_2_z + six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x
         ok = (
-        ok & m.every(leg, (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) &
-            (abs(six_r_w_1_t_67) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE *
-            six_r_size))
+        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
         )
-        sums = m.added(sums, leg, (
-        six_r_Q_xx, six_r_Q_xy, six_r_Q_xz, six_r_Q_yy, six_r_Q_yz, six_r_Q_zz,
-            six_r_M_ta_t_13, six_r_M_ta_t_14, six_r_M_ta_t_15, six_r_M_ta_t_16,
-            six_r_M_ta_t_17, six_r_M_ta_t_18, six_r_M_ta_t_19, six_r_M_ta_t_20,
-            six_r_M_ta_t_21, six_r_M_aa_t, six_r_M_aa_t_2, six_r_M_aa_t_3, six_r_M_aa_t_4,
-            six_r_M_aa_t_5, six_r_M_aa_t_6, six_r_U_x, six_r_U_y, six_r_U_z, six_r_Z_a_t,
-            six_r_Z_a_t_2, six_r_Z_a_t_3,
-        ))
+        # (M_tt) translational block of M
+        M_tt_six_r_xx += six_r_Q_xx
+        M_tt_xy += six_r_Q_xy
+        M_tt_xz += six_r_Q_xz
+        M_tt_six_r_yy += six_r_Q_yy
+        M_tt_yz += six_r_Q_yz
+        M_tt_six_r_zz += six_r_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += six_r_M_ta_t_13
+        M_ta_six_r_xy += six_r_M_ta_t_14
+        M_ta_six_r_xz += six_r_M_ta_t_15
+        M_ta_six_r_yx += six_r_M_ta_t_16
+        M_ta_t += six_r_M_ta_t_17
+        M_ta_six_r_yz += six_r_M_ta_t_18
+        M_ta_six_r_zx += six_r_M_ta_t_19
+        M_ta_six_r_zy += six_r_M_ta_t_20
+        M_ta_zz += six_r_M_ta_t_21
+        # (M_aa) rotational block of M
+        M_aa_six_r_xx += six_r_M_aa_t
+        M_aa_six_r_xy += six_r_M_aa_t_2
+        M_aa_six_r_xz += six_r_M_aa_t_3
+        M_aa_six_r_yy += six_r_M_aa_t_4
+        M_aa_six_r_yz += six_r_M_aa_t_5
+        M_aa_six_r_zz += six_r_M_aa_t_6
+        # (Z_t) translational part of Z
+        Z_t_six_r_x += six_r_U_x
+        Z_t_six_r_y += six_r_U_y
+        Z_t_six_r_z += six_r_U_z
+        # (Z_a) rotational part of Z
+        Z_a_six_r_x += six_r_Z_a_t
+        Z_a_six_r_y += six_r_Z_a_t_2
+        Z_a_six_r_z += six_r_Z_a_t_3
         # (six_r-w_2) force part of reciprocal wrench 2
         out_H[_H_six_r[0][leg]] = six_r_w_2_x
         out_H[_H_six_r[1][leg]] = six_r_w_2_y
@@ -4198,13 +4415,6 @@ def _run_dynamics(m, X, V, q):
         out_H[_H_six_r[3][leg]] = six_r_H_a_2_x
         out_H[_H_six_r[4][leg]] = six_r_H_a_2_y
         out_H[_H_six_r[5][leg]] = six_r_H_a_2_z
-    (
-    M_tt_six_r_xx, M_tt_xy, M_tt_xz, M_tt_six_r_yy, M_tt_yz, M_tt_six_r_zz, M_ta_xx,
-        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_t, M_ta_six_r_yz, M_ta_six_r_zx,
-        M_ta_six_r_zy, M_ta_zz, M_aa_six_r_xx, M_aa_six_r_xy, M_aa_six_r_xz, M_aa_six_r_yy,
-        M_aa_six_r_yz, M_aa_six_r_zz, Z_t_six_r_x, Z_t_six_r_y, Z_t_six_r_z, Z_a_six_r_x,
-        Z_a_six_r_y, Z_a_six_r_z,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_six_r_xx + m_star
     M_tt_yy = M_tt_six_r_yy + m_star
@@ -4343,7 +4553,12 @@ def _run_M(m, X, q):
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
-    sums = [0.0] * 21
+    (
+    M_tt_six_r_xx, M_tt_xy, M_tt_xz, M_tt_six_r_yy, M_tt_yz, M_tt_six_r_zz, M_ta_xx,
+        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_t, M_ta_six_r_yz, M_ta_six_r_zx,
+        M_ta_six_r_zy, M_ta_zz, M_aa_six_r_xx, M_aa_six_r_xy, M_aa_six_r_xz, M_aa_six_r_yy,
+        M_aa_six_r_yz, M_aa_six_r_zz,
+    ) = [0.0] * 21
     for leg, k in legs[0]:
         (
         six_r_J_1_in_spec1_xx, six_r_J_2_in_spec2_xx, six_r_J_2_in_spec2_xy,
@@ -5335,7 +5550,7 @@ def _run_M(m, X, q):
             six_r_d_Gamma_1_t_4*six_r_w_1_t_70 + six_r_d_Gamma_1_t_5*six_r_w_1_t_82 +
             six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_y - six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_x
         )
-        # (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_dalpha_G_m1_in_axes5_x = (
         six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_x*six_r_m1_w_3 +
@@ -5367,7 +5582,7 @@ def _run_M(m, X, q):
             axis_y_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_dalpha_G_m1_in_axes5_z
         )
-        # (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (six_r-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_d_G_m1_in_axes5_x = (
         six_r_d_Gamma_2_in_axes5_x*six_r_m1_w_2 + six_r_d_Gamma_3_in_axes5_x*six_r_m1_w_3 +
             six_r_d_Gamma_4_in_axes5_x*six_r_m1_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m1_w_1_t_2
@@ -5398,7 +5613,7 @@ def _run_M(m, X, q):
             axis_y_six_r_axes5_z*six_r_d_G_m1_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z
         )
-        # (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_dalpha_G_m2_in_axes5_x = (
         six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1 +
             six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
@@ -5430,7 +5645,7 @@ def _run_M(m, X, q):
             axis_y_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z
         )
-        # (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_d_G_m2_in_axes5_x = (
         six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1 + six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
             six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
@@ -5461,7 +5676,7 @@ def _run_M(m, X, q):
             axis_y_six_r_axes5_z*six_r_d_G_m2_in_axes5_y +
             axis_z_six_r_axes5_z*six_r_d_G_m2_in_axes5_z
         )
-        # (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (six_r-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         six_r_d_G_m_xx = six_r_d_G_m1_x*six_r_n_m1_x + six_r_d_G_m2_x*six_r_n_m2_x
         six_r_d_G_m_xy = six_r_d_G_m1_y*six_r_n_m1_x + six_r_d_G_m2_y*six_r_n_m2_x
         six_r_d_G_m_xz = six_r_d_G_m1_z*six_r_n_m1_x + six_r_d_G_m2_z*six_r_n_m2_x
@@ -5784,24 +5999,34 @@ def _run_M(m, X, q):
             six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z)
         )
         ok = (
-        ok & m.every(leg, (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) &
-            (abs(six_r_w_1_t_67) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE *
-            six_r_size))
+        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
         )
-        sums = m.added(sums, leg, (
-        six_r_Q_xx, six_r_Q_xy, six_r_Q_xz, six_r_Q_yy, six_r_Q_yz, six_r_Q_zz,
-            six_r_M_ta_t_13, six_r_M_ta_t_14, six_r_M_ta_t_15, six_r_M_ta_t_16,
-            six_r_M_ta_t_17, six_r_M_ta_t_18, six_r_M_ta_t_19, six_r_M_ta_t_20,
-            six_r_M_ta_t_21, six_r_M_aa_t, six_r_M_aa_t_2, six_r_M_aa_t_3, six_r_M_aa_t_4,
-            six_r_M_aa_t_5, six_r_M_aa_t_6,
-        ))
-    (
-    M_tt_six_r_xx, M_tt_xy, M_tt_xz, M_tt_six_r_yy, M_tt_yz, M_tt_six_r_zz, M_ta_xx,
-        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_t, M_ta_six_r_yz, M_ta_six_r_zx,
-        M_ta_six_r_zy, M_ta_zz, M_aa_six_r_xx, M_aa_six_r_xy, M_aa_six_r_xz, M_aa_six_r_yy,
-        M_aa_six_r_yz, M_aa_six_r_zz,
-    ) = sums
+        # (M_tt) translational block of M
+        M_tt_six_r_xx += six_r_Q_xx
+        M_tt_xy += six_r_Q_xy
+        M_tt_xz += six_r_Q_xz
+        M_tt_six_r_yy += six_r_Q_yy
+        M_tt_yz += six_r_Q_yz
+        M_tt_six_r_zz += six_r_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += six_r_M_ta_t_13
+        M_ta_six_r_xy += six_r_M_ta_t_14
+        M_ta_six_r_xz += six_r_M_ta_t_15
+        M_ta_six_r_yx += six_r_M_ta_t_16
+        M_ta_t += six_r_M_ta_t_17
+        M_ta_six_r_yz += six_r_M_ta_t_18
+        M_ta_six_r_zx += six_r_M_ta_t_19
+        M_ta_six_r_zy += six_r_M_ta_t_20
+        M_ta_zz += six_r_M_ta_t_21
+        # (M_aa) rotational block of M
+        M_aa_six_r_xx += six_r_M_aa_t
+        M_aa_six_r_xy += six_r_M_aa_t_2
+        M_aa_six_r_xz += six_r_M_aa_t_3
+        M_aa_six_r_yy += six_r_M_aa_t_4
+        M_aa_six_r_yz += six_r_M_aa_t_5
+        M_aa_six_r_zz += six_r_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_six_r_xx + m_star
     M_tt_yy = M_tt_six_r_yy + m_star
@@ -5962,7 +6187,7 @@ def _run_Z(m, X, V, q):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 6
+    Z_t_six_r_x, Z_t_six_r_y, Z_t_six_r_z, Z_a_six_r_x, Z_a_six_r_y, Z_a_six_r_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         six_r_J_1_in_spec1_xx, six_r_J_2_in_spec2_xy, six_r_J_2_in_spec2_xz,
@@ -6972,7 +7197,7 @@ def _run_Z(m, X, V, q):
         six_r_mu_1_o_in_axes1_z + six_r_N_2_o_in_axes2_x*six_r_s_2 +
             six_r_N_2_o_in_axes2_y*six_r_c_2
         )
-        # (six_r-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z
         six_r_G_m1_o_t_2 = (
         inv_six_r_w_1_t_28*(six_r_G_m1_o_t*six_r_w_1_t_15 - six_r_N_4_o_in_axes4_z)
@@ -6994,13 +7219,13 @@ def _run_Z(m, X, V, q):
         six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_31 + six_r_G_m1_o_t_3*six_r_w_1_t_53 +
             six_r_G_m1_o_t_4*six_r_w_1_t_71 - six_r_G_m1_o_t_5*six_r_qd_1_t_4)
         )
-        # (six_r-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m2_o_t = (
         six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_32 + six_r_G_m1_o_t_3*six_r_w_1_t_54 +
             six_r_G_m1_o_t_4*six_r_w_1_t_72 - six_r_G_m1_o_t*six_r_w_1_t_14 -
             six_r_G_m1_o_t_5*six_r_qd_1_t_5)
         )
-        # (six_r-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*six_r_n_m2_in_axes5_z
         six_r_G_m_o_in_axes5_y = (
         six_r_G_m2_o_t*six_r_end_p1_in_axes5_z - six_r_G_m1_o_t_6*six_r_n_m1_in_axes5_y
@@ -7057,15 +7282,18 @@ def _run_Z(m, X, V, q):
             six_r_U_x*six_r_q_y
         )
         ok = (
-        ok & m.every(leg, (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) &
-            (abs(six_r_w_1_t_67) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE *
-            six_r_size))
+        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
         )
-        sums = m.added(sums, leg, (
-        six_r_U_x, six_r_U_y, six_r_U_z, six_r_Z_a_t, six_r_Z_a_t_2, six_r_Z_a_t_3,
-        ))
-    Z_t_six_r_x, Z_t_six_r_y, Z_t_six_r_z, Z_a_six_r_x, Z_a_six_r_y, Z_a_six_r_z = sums
+        # (Z_t) translational part of Z
+        Z_t_six_r_x += six_r_U_x
+        Z_t_six_r_y += six_r_U_y
+        Z_t_six_r_z += six_r_U_z
+        # (Z_a) rotational part of Z
+        Z_a_six_r_x += six_r_Z_a_t
+        Z_a_six_r_y += six_r_Z_a_t_2
+        Z_a_six_r_z += six_r_Z_a_t_3
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_six_r_x
     Z_t_y = Z_p_y + Z_t_six_r_y
@@ -7516,10 +7744,9 @@ def _run_H(m, X, q):
         six_r_H_a_2_y = six_r_o_2_y + six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z
         six_r_H_a_2_z = six_r_o_2_z + six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x
         ok = (
-        ok & m.every(leg, (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) &
-            (abs(six_r_w_1_t_67) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE *
-            six_r_size))
+        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
         )
         # (six_r-w_2) force part of reciprocal wrench 2
         out_H[_H_six_r[0][leg]] = six_r_w_2_x
@@ -7672,7 +7899,7 @@ def _run_required(m, X, V, A, q):
     mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
     mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
     mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
-    sums = [0.0] * 6
+    R_t_t, R_t_t_2, R_t_t_3, R_a_six_r_x, R_a_six_r_y, R_a_six_r_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         six_r_J_1_in_spec1_xx, six_r_J_2_in_spec2_xy, six_r_J_2_in_spec2_xz,
@@ -8692,7 +8919,7 @@ def _run_required(m, X, V, A, q):
         six_r_N_1_in_axes1_z = (
         six_r_mu_1_in_axes1_z + six_r_N_2_in_axes2_x*six_r_s_2 + six_r_N_2_in_axes2_y*six_r_c_2
         )
-        # (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m1_t = inv_six_r_w_1_t_12*six_r_mu_5_in_axes5_z
         six_r_G_m1_t_2 = inv_six_r_w_1_t_28*(six_r_G_m1_t*six_r_w_1_t_15 - six_r_N_4_in_axes4_z)
         six_r_G_m1_t_3 = (
@@ -8712,13 +8939,13 @@ def _run_required(m, X, V, A, q):
         six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_31 + six_r_G_m1_t_3*six_r_w_1_t_53 +
             six_r_G_m1_t_4*six_r_w_1_t_71 - six_r_G_m1_t_5*six_r_m1_w_2_t)
         )
-        # (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m2_t = (
         six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_32 + six_r_G_m1_t_3*six_r_w_1_t_54 +
             six_r_G_m1_t_4*six_r_w_1_t_72 - six_r_G_m1_t*six_r_w_1_t_14 -
             six_r_G_m1_t_5*six_r_m2_w_2_t)
         )
-        # (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m_in_axes5_x = six_r_G_m1_t_6*six_r_n_m2_in_axes5_z
         six_r_G_m_in_axes5_y = (
         six_r_G_m2_t*six_r_end_p1_in_axes5_z - six_r_G_m1_t_6*six_r_n_m1_in_axes5_y
@@ -8784,14 +9011,18 @@ def _run_required(m, X, V, A, q):
             six_r_q_x*six_r_w_2_y - axis_x_six_r_axes5_z*six_r_o_2_t - six_r_q_y*six_r_w_2_x
         )
         ok = (
-        ok & m.every(leg, (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) &
-            (abs(six_r_w_1_t_67) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE *
-            six_r_size))
+        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
         )
-        sums = m.added(sums, leg, (
-        six_r_c_x, six_r_c_y, six_r_c_z, six_r_R_a_t, six_r_R_a_t_2, six_r_R_a_t_3,
-        ))
+        # (R_t) force that actuators and external wrench must give
+        R_t_t += six_r_c_x
+        R_t_t_2 += six_r_c_y
+        R_t_t_3 += six_r_c_z
+        # (R_a) moment that actuators and external wrench must give
+        R_a_six_r_x += six_r_R_a_t
+        R_a_six_r_y += six_r_R_a_t_2
+        R_a_six_r_z += six_r_R_a_t_3
         # (six_r-w_2) force part of reciprocal wrench 2
         out_H[_H_six_r[0][leg]] = six_r_w_2_x
         out_H[_H_six_r[1][leg]] = six_r_w_2_y
@@ -8800,7 +9031,6 @@ def _run_required(m, X, V, A, q):
         out_H[_H_six_r[3][leg]] = six_r_H_a_2_x
         out_H[_H_six_r[4][leg]] = six_r_H_a_2_y
         out_H[_H_six_r[5][leg]] = six_r_H_a_2_z
-    R_t_t, R_t_t_2, R_t_t_3, R_a_six_r_x, R_a_six_r_y, R_a_six_r_z = sums
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t
     R_t_y = f_p_y - R_t_t_2
@@ -9289,10 +9519,9 @@ def _run_joint_rates(m, X, V, q):
             six_r_qd_4*six_r_w_1_t_15 - six_r_S_dot_in_axes5_y*six_r_w_1_t_13)
         )
         ok = (
-        ok & m.every(leg, (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) &
-            (abs(six_r_w_1_t_67) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE *
-            six_r_size))
+        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
         )
         # (six_r-qd_1) rate of joint 1
         out_qd[_qd_six_r[0][leg]] = six_r_qd_1
@@ -10034,10 +10263,9 @@ def _run_joint_accelerations(m, X, V, A, q):
             six_r_qdd_1_t_4*six_r_w_1_t_22 - six_r_qdd_4*six_r_w_1_t_15)
         )
         ok = (
-        ok & m.every(leg, (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) &
-            (abs(six_r_w_1_t_67) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE *
-            six_r_size))
+        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
         )
         # (six_r-qdd_1) acceleration of joint 1
         out_qdd[_qdd_six_r[0][leg]] = -six_r_qdd_1_t_5
@@ -10116,7 +10344,7 @@ def _run_legs(m, X, V, A, q):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
-    out_drive = m.zeros("drive")
+    out_actuator = m.zeros("actuator")
     for leg, k in legs[0]:
         (
         six_r_J_1_in_spec1_xx, six_r_J_2_in_spec2_xy, six_r_J_2_in_spec2_xz,
@@ -11148,7 +11376,7 @@ def _run_legs(m, X, V, A, q):
         six_r_N_1_in_axes1_z = (
         six_r_mu_1_in_axes1_z + six_r_N_2_in_axes2_x*six_r_s_2 + six_r_N_2_in_axes2_y*six_r_c_2
         )
-        # (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m1_t = inv_six_r_w_1_t_12*six_r_mu_5_in_axes5_z
         six_r_G_m1_t_2 = inv_six_r_w_1_t_28*(six_r_G_m1_t*six_r_w_1_t_15 - six_r_N_4_in_axes4_z)
         six_r_G_m1_t_3 = (
@@ -11168,13 +11396,13 @@ def _run_legs(m, X, V, A, q):
         six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_31 + six_r_G_m1_t_3*six_r_w_1_t_53 +
             six_r_G_m1_t_4*six_r_w_1_t_71 - six_r_G_m1_t_5*six_r_m1_w_2_t)
         )
-        # (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m2_t = (
         six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_32 + six_r_G_m1_t_3*six_r_w_1_t_54 +
             six_r_G_m1_t_4*six_r_w_1_t_72 - six_r_G_m1_t*six_r_w_1_t_14 -
             six_r_G_m1_t_5*six_r_m2_w_2_t)
         )
-        # (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m_in_axes5_x = six_r_G_m1_t_6*six_r_n_m2_in_axes5_z
         six_r_G_m_in_axes5_y = (
         six_r_G_m2_t*six_r_end_p1_in_axes5_z - six_r_G_m1_t_6*six_r_n_m1_in_axes5_y
@@ -11233,10 +11461,9 @@ def _run_legs(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_c_true_in_axes5_z
         )
         ok = (
-        ok & m.every(leg, (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) >
-            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) &
-            (abs(six_r_w_1_t_67) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE *
-            six_r_size))
+        ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
+            six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_67) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE * six_r_size)
         )
         # (six_r-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_six_r[0][leg]] = six_r_c_true_x
@@ -11247,14 +11474,14 @@ def _run_legs(m, X, V, A, q):
         out_leg_force[_leg_force_six_r[4][leg]] = six_r_c_m_y
         out_leg_force[_leg_force_six_r[5][leg]] = six_r_c_m_z
         # (six_r-w_2) force part of reciprocal wrench 2
-        out_drive[_drive_six_r[0][leg]] = six_r_w_2_x
-        out_drive[_drive_six_r[1][leg]] = six_r_w_2_y
-        out_drive[_drive_six_r[2][leg]] = six_r_w_2_z
+        out_actuator[_actuator_six_r[0][leg]] = six_r_w_2_x
+        out_actuator[_actuator_six_r[1][leg]] = six_r_w_2_y
+        out_actuator[_actuator_six_r[2][leg]] = six_r_w_2_z
         # (six_r-o_2) moment part of reciprocal wrench 2
-        out_drive[_drive_six_r[3][leg]] = six_r_o_2_x
-        out_drive[_drive_six_r[4][leg]] = six_r_o_2_y
-        out_drive[_drive_six_r[5][leg]] = six_r_o_2_z
-    return ok, (out_leg_force, out_drive,)
+        out_actuator[_actuator_six_r[3][leg]] = six_r_o_2_x
+        out_actuator[_actuator_six_r[4][leg]] = six_r_o_2_y
+        out_actuator[_actuator_six_r[5][leg]] = six_r_o_2_z
+    return ok, (out_leg_force, out_actuator,)
 
 
 # potential: 393 mul, 360 add, 0 div, 0 sqrt, 60 trig
@@ -11310,7 +11537,7 @@ def _run_potential(m, X, q):
         R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
         R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
-    sums = [0.0] * 1
+    potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
         six_r_acc_3_t, six_r_acc_3_t_2, six_r_g_in_axes1_z, six_r_h_1_in_spec1_x,
@@ -11397,10 +11624,8 @@ def _run_potential(m, X, q):
             six_r_potential_t_11*(six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1) +
             six_r_potential_t_9*(six_r_c_2*six_r_g_in_axes1_y + six_r_g_in_axes1_z*six_r_s_2)
         )
-        sums = m.added(sums, leg, (
-        six_r_potential_t_12,
-        ))
-    potential_t_2, = sums
+        # (potential) potential energy
+        potential_t_2 += six_r_potential_t_12
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy
@@ -11454,7 +11679,7 @@ def _run_condition(m, X, q):
     out_reach = m.zeros("reach")
     # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
-    sums = [0.0] * 1
+    spread_six_r, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_six_r_size, six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz,
@@ -11868,14 +12093,13 @@ def _run_condition(m, X, q):
             six_r_spread_t_3*six_r_spread_t_3
         )
         clear = (
-        clear & m.every(leg, (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) &
-            (abs(six_r_w_1_t_28) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE *
-            six_r_size) & (abs(six_r_w_1_t_67) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) >
-            _TOLERANCE * six_r_size))
+        clear & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) >
+            _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_49) > _TOLERANCE * six_r_size) &
+            (abs(six_r_w_1_t_67) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_79) > _TOLERANCE *
+            six_r_size)
         )
-        sums = m.added(sums, leg, (
-        six_r_spread_t_4,
-        ))
+        # (spread) rms distance of the platform points from their centroid
+        spread_six_r += six_r_spread_t_4
         # (six_r-w_2) force part of reciprocal wrench 2
         out_H[_H_six_r[0][leg]] = six_r_w_2_x
         out_H[_H_six_r[1][leg]] = six_r_w_2_y
@@ -11886,7 +12110,6 @@ def _run_condition(m, X, q):
         out_H[_H_six_r[5][leg]] = six_r_H_a_2_z
         # (six_r-w_1) force part of reciprocal wrench 1
         out_pivots[_pivots_six_r[0][leg]] = six_r_least_pivots
-    spread_six_r, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_six_r)*spread_t
     # (spread) rms distance of the platform points from their centroid
@@ -12241,8 +12464,8 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights, q0):
     q = _closed(m, X, q0)
     required, H = m.run(_run_required, ("required", "H"), X, V, A, q)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    tau = _solve(H, subtract_2)
+    subtract_1 = required - extend_1
+    tau = _solve(H, subtract_1)
     return (tau,)
 
 
@@ -12250,10 +12473,10 @@ def _steps_forward_dynamics(m, X, V, tau, wrench, q0):
     q = _closed(m, X, q0)
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V, q)
     times_1 = np.einsum("ijs,js->is", H, tau)
-    extend_2 = wrench
-    add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z
-    A = _solve(M, subtract_4)
+    extend_1 = wrench
+    add_1 = times_1 + extend_1
+    subtract_1 = add_1 - Z
+    A = _solve(M, subtract_1)
     return (A,)
 
 
@@ -12266,10 +12489,10 @@ def _steps_leg_reactions(m, X, V, A, wrench, q0):
     q = _closed(m, X, q0)
     required, H = m.run(_run_required, ("required", "H"), X, V, A, q)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    solve_3 = _solve(H, subtract_2)
-    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A, q)
-    forces = _with_forces(leg_force, solve_3, drive, [0, 1, 2, 3, 4, 5])
+    subtract_1 = required - extend_1
+    solve_1 = _solve(H, subtract_1)
+    leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A, q)
+    forces = _with_forces(leg_force, solve_1, actuator, [0, 1, 2, 3, 4, 5])
     return (forces,)
 
 
@@ -12293,8 +12516,8 @@ def _steps_condition(m, X, length, q0):
     q = _closed(m, X, q0)
     H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X, q)
     choose_length_1 = _chosen_length(lengths, length)
-    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5])
-    sigma = _singular_values(divide_rows_2)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
@@ -12302,8 +12525,8 @@ def _steps_mismatch(m, X, q_actuated, q0):
     q = _closed(m, X, q0)
     q, = m.run(_run_inverse_kinematics, ("q",), q)
     take_1 = q[[1, 6, 11, 16, 21, 26]]
-    subtract_2 = q_actuated - take_1
-    gap = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5])
+    subtract_1 = q_actuated - take_1
+    gap = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5])
     return (gap,)
 
 
@@ -12384,24 +12607,24 @@ def _steps_rotation(m, X):
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
-    join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rotation_1))
+    X = join_1
     return (X,)
 
 
 def _steps_X_dot(m, X, V):
     take_1 = V[3:6]
     take_2 = X[3:7]
-    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
-    take_4 = V[0:3]
-    X_dot = np.concatenate((take_4, quaternion_rate_3))
+    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
+    take_3 = V[0:3]
+    X_dot = np.concatenate((take_3, quaternion_rate_1))
     return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
-    join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rpy_1))
+    X = join_1
     return (X,)
 
 
@@ -12410,9 +12633,9 @@ def _steps_retract(m, X, step):
     take_2 = X[3:7]
     take_3 = step[0:3]
     take_4 = step[3:6]
-    turn_quaternion_5 = _turned(take_2, take_4)
-    add_6 = take_1 + take_3
-    X_moved = np.concatenate((add_6, turn_quaternion_5))
+    turn_quaternion_1 = _turned(take_2, take_4)
+    add_1 = take_1 + take_3
+    X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
@@ -12421,9 +12644,9 @@ def _steps_difference(m, X0, X1):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    step = np.concatenate((subtract_6, turn_between_5))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
@@ -12432,17 +12655,17 @@ def _steps_interpolate(m, X0, X1, s):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    join_7 = np.concatenate((subtract_6, turn_between_5))
-    scale_8 = join_7 * s
-    take_9 = X0[0:3]
-    take_10 = X0[3:7]
-    take_11 = scale_8[0:3]
-    take_12 = scale_8[3:6]
-    turn_quaternion_13 = _turned(take_10, take_12)
-    add_14 = take_9 + take_11
-    X = np.concatenate((add_14, turn_quaternion_13))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    join_1 = np.concatenate((subtract_1, turn_between_1))
+    scale_1 = join_1 * s
+    take_5 = X0[0:3]
+    take_6 = X0[3:7]
+    take_7 = scale_1[0:3]
+    take_8 = scale_1[3:6]
+    turn_quaternion_1 = _turned(take_6, take_8)
+    add_1 = take_5 + take_7
+    X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
 

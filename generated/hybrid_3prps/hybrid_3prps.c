@@ -54,12 +54,27 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+#define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
+
+/* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
+#define NQ ((size_t)HYBRID_3PRPS_NQ)
+#define NV ((size_t)HYBRID_3PRPS_NV)
+#define NU ((size_t)HYBRID_3PRPS_NU)
+#define NC ((size_t)HYBRID_3PRPS_NC)
+#define NW ((size_t)HYBRID_3PRPS_NW)
+#define NJ ((size_t)HYBRID_3PRPS_NJ)
+#define NL ((size_t)3)
+#define LEGS_OF_prps ((size_t)3)
+
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
 /* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
    epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
+/* Lengths, or squares of them, that are not larger count as zero. */
+#define LEAST_1 (TOLERANCE*TOLERANCE*R(0.5625))
+#define LEAST_2 (TOLERANCE*R(0.75))
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
 
@@ -114,6 +129,12 @@ INLINE void clear(real *x, size_t n)
     for (size_t i = 0; i < n; ++i) {
         x[i] = 0;
     }
+}
+
+/* What a leg adds to a sum, or gives alone. */
+INLINE void gather(real *sum, int add, real term)
+{
+    *sum = add ? *sum + term : term;
 }
 
 INLINE int is_finite(real x)
@@ -445,25 +466,25 @@ static int acceptable(const hybrid_3prps_params *p)
     ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->prps_base_point[0][0], 9);
-    ok &= all_within(&p->prps_base_frame[0][0][0], 27);
-    ok &= all_rotations(&p->prps_base_frame[0][0][0], 3);
-    ok &= all_within(&p->prps_platform_point[0][0], 9);
-    ok &= all_within(&p->prps_link1_mass[0], 3);
-    ok &= none_negative(&p->prps_link1_mass[0], 3);
-    ok &= all_within(&p->prps_link1_centre_of_mass[0][0], 9);
-    ok &= all_within(&p->prps_link1_inertia[0][0][0], 27);
-    ok &= all_inertias(&p->prps_link1_inertia[0][0][0], 3);
-    ok &= all_within(&p->prps_link2_mass[0], 3);
-    ok &= none_negative(&p->prps_link2_mass[0], 3);
-    ok &= all_within(&p->prps_link2_centre_of_mass[0][0], 9);
-    ok &= all_within(&p->prps_link2_inertia[0][0][0], 27);
-    ok &= all_inertias(&p->prps_link2_inertia[0][0][0], 3);
-    ok &= all_within(&p->prps_link3_mass[0], 3);
-    ok &= none_negative(&p->prps_link3_mass[0], 3);
-    ok &= all_within(&p->prps_link3_centre_of_mass[0][0], 9);
-    ok &= all_within(&p->prps_link3_inertia[0][0][0], 27);
-    ok &= all_inertias(&p->prps_link3_inertia[0][0][0], 3);
+    ok &= all_within(&p->prps_base_point[0][0], 3*LEGS_OF_prps);
+    ok &= all_within(&p->prps_base_frame[0][0][0], 9*LEGS_OF_prps);
+    ok &= all_rotations(&p->prps_base_frame[0][0][0], LEGS_OF_prps);
+    ok &= all_within(&p->prps_platform_point[0][0], 3*LEGS_OF_prps);
+    ok &= all_within(&p->prps_link1_mass[0], LEGS_OF_prps);
+    ok &= none_negative(&p->prps_link1_mass[0], LEGS_OF_prps);
+    ok &= all_within(&p->prps_link1_centre_of_mass[0][0], 3*LEGS_OF_prps);
+    ok &= all_within(&p->prps_link1_inertia[0][0][0], 9*LEGS_OF_prps);
+    ok &= all_inertias(&p->prps_link1_inertia[0][0][0], LEGS_OF_prps);
+    ok &= all_within(&p->prps_link2_mass[0], LEGS_OF_prps);
+    ok &= none_negative(&p->prps_link2_mass[0], LEGS_OF_prps);
+    ok &= all_within(&p->prps_link2_centre_of_mass[0][0], 3*LEGS_OF_prps);
+    ok &= all_within(&p->prps_link2_inertia[0][0][0], 9*LEGS_OF_prps);
+    ok &= all_inertias(&p->prps_link2_inertia[0][0][0], LEGS_OF_prps);
+    ok &= all_within(&p->prps_link3_mass[0], LEGS_OF_prps);
+    ok &= none_negative(&p->prps_link3_mass[0], LEGS_OF_prps);
+    ok &= all_within(&p->prps_link3_centre_of_mass[0][0], 3*LEGS_OF_prps);
+    ok &= all_within(&p->prps_link3_inertia[0][0][0], 9*LEGS_OF_prps);
+    ok &= all_inertias(&p->prps_link3_inertia[0][0][0], LEGS_OF_prps);
     return ok;
 }
 
@@ -473,16 +494,16 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real m_star_prps = 0;
-    real h_star_prps_in_platform_x = 0;
-    real h_star_prps_in_platform_y = 0;
-    real h_star_prps_in_platform_z = 0;
-    real J_star_prps_in_platform_xx = 0;
-    real J_star_prps_in_platform_xy = 0;
-    real J_star_prps_in_platform_xz = 0;
-    real J_star_prps_in_platform_yy = 0;
-    real J_star_prps_in_platform_yz = 0;
-    real J_star_prps_in_platform_zz = 0;
+    real m_star_of_legs = 0;
+    real h_star_in_platform_x_of_legs = 0;
+    real h_star_in_platform_y_of_legs = 0;
+    real h_star_in_platform_z_of_legs = 0;
+    real J_star_in_platform_xx_of_legs = 0;
+    real J_star_in_platform_xy_of_legs = 0;
+    real J_star_in_platform_xz_of_legs = 0;
+    real J_star_in_platform_yy_of_legs = 0;
+    real J_star_in_platform_yz_of_legs = 0;
+    real J_star_in_platform_zz_of_legs = 0;
     real b_c_prps_in_platform_x = 0;
     real b_c_prps_in_platform_y = 0;
     real b_c_prps_in_platform_z = 0;
@@ -523,8 +544,8 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
     model->gravity_z = gravity_z;
     model->legs_size = legs_size;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 4; ++leg) {
-        const size_t own = leg < 3 ? leg : 0;
+    for (size_t leg = 0; leg < FILLED(LEGS_OF_prps); ++leg) {
+        const size_t own = leg < LEGS_OF_prps ? leg : 0;
         const real prps_base_point_x = params->prps_base_point[own][0];
         const real prps_base_point_y = params->prps_base_point[own][1];
         const real prps_base_point_z = params->prps_base_point[own][2];
@@ -677,38 +698,38 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         model->prps_potential_t_2[leg] = prps_potential_t_2;
         model->prps_potential_t_3[leg] = prps_potential_t_3;
         model->prps_potential_t_4[leg] = prps_potential_t_4;
-        m_star_prps += leg < 3 ? prps_link3_mass : 0;
-        h_star_prps_in_platform_x += leg < 3 ? prps_h_star_t : 0;
-        h_star_prps_in_platform_y += leg < 3 ? prps_h_star_t_2 : 0;
-        h_star_prps_in_platform_z += leg < 3 ? prps_h_star_t_3 : 0;
-        J_star_prps_in_platform_xx += leg < 3 ? -prps_J_star_t_5 : 0;
-        J_star_prps_in_platform_xy += leg < 3 ? -prps_J_star_t_6 : 0;
-        J_star_prps_in_platform_xz += leg < 3 ? -prps_J_star_t_7 : 0;
-        J_star_prps_in_platform_yy += leg < 3 ? -prps_J_star_t_8 : 0;
-        J_star_prps_in_platform_yz += leg < 3 ? -prps_J_star_t_9 : 0;
-        J_star_prps_in_platform_zz += leg < 3 ? -prps_J_star_t_10 : 0;
-        b_c_prps_in_platform_x += leg < 3 ? prps_platform_point_x : 0;
-        b_c_prps_in_platform_y += leg < 3 ? prps_platform_point_y : 0;
-        b_c_prps_in_platform_z += leg < 3 ? prps_platform_point_z : 0;
+        m_star_of_legs += leg < LEGS_OF_prps ? prps_link3_mass : 0;
+        h_star_in_platform_x_of_legs += leg < LEGS_OF_prps ? prps_h_star_t : 0;
+        h_star_in_platform_y_of_legs += leg < LEGS_OF_prps ? prps_h_star_t_2 : 0;
+        h_star_in_platform_z_of_legs += leg < LEGS_OF_prps ? prps_h_star_t_3 : 0;
+        J_star_in_platform_xx_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_5 : 0;
+        J_star_in_platform_xy_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_6 : 0;
+        J_star_in_platform_xz_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_7 : 0;
+        J_star_in_platform_yy_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_8 : 0;
+        J_star_in_platform_yz_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_9 : 0;
+        J_star_in_platform_zz_of_legs += leg < LEGS_OF_prps ? -prps_J_star_t_10 : 0;
+        b_c_prps_in_platform_x += leg < LEGS_OF_prps ? prps_platform_point_x : 0;
+        b_c_prps_in_platform_y += leg < LEGS_OF_prps ? prps_platform_point_y : 0;
+        b_c_prps_in_platform_z += leg < LEGS_OF_prps ? prps_platform_point_z : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_prps + platform_mass;
+    const real m_star = m_star_of_legs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = h_star_prps_in_platform_x + h_star_t;
-    const real h_star_in_platform_y = h_star_prps_in_platform_y + h_star_t_2;
-    const real h_star_in_platform_z = h_star_prps_in_platform_z + h_star_t_3;
+    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
+    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
+    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xx = J_star_prps_in_platform_xx + platform_inertia_xx -
+    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
         J_star_t_5;
-    const real J_star_in_platform_xy = J_star_prps_in_platform_xy + platform_inertia_xy -
+    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
         J_star_t_6;
-    const real J_star_in_platform_xz = J_star_prps_in_platform_xz + platform_inertia_xz -
+    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
         J_star_t_7;
-    const real J_star_in_platform_yy = J_star_prps_in_platform_yy + platform_inertia_yy -
+    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
         J_star_t_8;
-    const real J_star_in_platform_yz = J_star_prps_in_platform_yz + platform_inertia_yz -
+    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
         J_star_t_9;
-    const real J_star_in_platform_zz = J_star_prps_in_platform_zz + platform_inertia_zz -
+    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
         J_star_t_10;
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
@@ -811,9 +832,10 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
 }
 
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
+#define PADDED(n) (((n) + 4)/4*4)
 INLINE size_t stride_of(size_t n, size_t w)
 {
-    return w == 1 ? (n + 4)/4*4 : n + 1;
+    return w == 1 ? PADDED(n) : n + 1;
 }
 
 INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
@@ -1245,7 +1267,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 {
     enum { Q = 3 };
     const real turn[3] = {part*step[Q], part*step[Q + 1], part*step[Q + 2]};
-    for (size_t i = 0; i < 6; ++i) {
+    for (size_t i = 0; i < NV; ++i) {
         const size_t e = i + (i > Q + 2);
         to[e] = X[e] + part*step[i];
     }
@@ -1254,7 +1276,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 576 mul, 483 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
     verdict *t)
 {
@@ -1642,37 +1664,37 @@ INLINE void dynamics_legs_prps(const prepared *m, size_t w, size_t leg, size_t l
         const real prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x;
         const real prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + prps_Q_xx : prps_Q_xx;  /* M_tt_prps_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prps_Q_xy : prps_Q_xy;  /* M_tt_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prps_Q_xz : prps_Q_xz;  /* M_tt_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + prps_Q_yy : prps_Q_yy;  /* M_tt_prps_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + prps_Q_yz : prps_Q_yz;  /* M_tt_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prps_Q_zz : prps_Q_zz;  /* M_tt_prps_zz */
+        gather(&terms[0*count + k], add, prps_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, prps_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, prps_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, prps_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, prps_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, prps_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + prps_M_ta_t_3 : prps_M_ta_t_3;  /* M_ta_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + prps_M_ta_t_4 : prps_M_ta_t_4;  /* M_ta_prps_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + prps_M_ta_t_5 : prps_M_ta_t_5;  /* M_ta_prps_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + prps_M_ta_t_6 : prps_M_ta_t_6;  /* M_ta_prps_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + -prps_M_ta_t_8 : -prps_M_ta_t_8;  /* M_ta_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + prps_M_ta_t_9 : prps_M_ta_t_9;  /* M_ta_prps_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + prps_M_ta_t_10 : prps_M_ta_t_10;  /* M_ta_prps_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + prps_M_ta_t_11 : prps_M_ta_t_11;  /* M_ta_prps_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + prps_M_ta_t_12 : prps_M_ta_t_12;  /* M_ta_zz */
+        gather(&terms[6*count + k], add, prps_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, prps_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, prps_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, prps_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, -prps_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, prps_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, prps_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, prps_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, prps_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + prps_M_aa_t : prps_M_aa_t;  /* M_aa_prps_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + prps_M_aa_t_2 : prps_M_aa_t_2;  /* M_aa_prps_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + prps_M_aa_t_3 : prps_M_aa_t_3;  /* M_aa_prps_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + prps_M_aa_t_4 : prps_M_aa_t_4;  /* M_aa_prps_yy */
-        terms[19*count + k] = add ? terms[19*count + k] + prps_M_aa_t_5 : prps_M_aa_t_5;  /* M_aa_prps_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + prps_M_aa_t_6 : prps_M_aa_t_6;  /* M_aa_prps_zz */
+        gather(&terms[15*count + k], add, prps_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, prps_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, prps_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, prps_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, prps_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, prps_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[21*count + k] = add ? terms[21*count + k] + prps_U_x : prps_U_x;  /* Z_t_prps_x */
-        terms[22*count + k] = add ? terms[22*count + k] + prps_U_y : prps_U_y;  /* Z_t_prps_y */
-        terms[23*count + k] = add ? terms[23*count + k] + prps_U_z : prps_U_z;  /* Z_t_prps_z */
+        gather(&terms[21*count + k], add, prps_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[22*count + k], add, prps_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[23*count + k], add, prps_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[24*count + k] = add ? terms[24*count + k] + prps_Z_a_t : prps_Z_a_t;  /* Z_a_prps_x */
-        terms[25*count + k] = add ? terms[25*count + k] + prps_Z_a_t_2 : prps_Z_a_t_2;  /* Z_a_prps_y */
-        terms[26*count + k] = add ? terms[26*count + k] + prps_Z_a_t_3 : prps_Z_a_t_3;  /* Z_a_prps_z */
+        gather(&terms[24*count + k], add, prps_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[25*count + k], add, prps_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[26*count + k], add, prps_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (prps-w_1) reciprocal vector 1 */
         o[0*count + k] = prps_base_frame_xz;
         o[1*count + k] = prps_base_frame_yz;
@@ -1693,8 +1715,8 @@ INLINE void dynamics_legs_prps(const prepared *m, size_t w, size_t leg, size_t l
             (prps_H_a_1_x + (prps_H_a_1_y + prps_H_a_1_z))) + ((axis_x_prps_axes2_x +
             (axis_x_prps_axes2_y + axis_x_prps_axes2_z)) + (prps_H_a_3_x + (prps_H_a_3_y +
             prps_H_a_3_z)));
-        o[12*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
+        o[12*count + k] = UNLESS(magnitude(prps_rho2_2) > LEAST_1) + UNLESS(magnitude(prps_root_2)
+            > LEAST_2);
     }
 }
 
@@ -1702,18 +1724,18 @@ INLINE void dynamics_place_prps(size_t w, size_t count, const real *o, size_t le
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2*leg)*w + k] = o[0*count + first + k];
-        H[(6 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(12 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(18 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(24 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(30 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(7 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(13 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(19 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(25 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(31 + 2*leg)*w + k] = o[11*count + first + k];
+        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[(NU + 2*leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
+        H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
+        H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
+        H[(4*NU + 1 + 2*leg)*w + k] = o[10*count + first + k];
+        H[(5*NU + 1 + 2*leg)*w + k] = o[11*count + first + k];
         t->singular[k] += o[12*count + first + k];
         t->total[k] += o[13*count + first + k];
     }
@@ -1724,113 +1746,113 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_prps_xx = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_prps_xx + m_star;
-        const real M_tt_prps_yy = sums[3*w + k];
-        const real M_tt_yy = M_tt_prps_yy + m_star;
-        const real M_tt_prps_zz = sums[5*w + k];
-        const real M_tt_zz = M_tt_prps_zz + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_prps_xy = sums[7*w + k];
+        const real M_ta_xy_of_legs = sums[7*w + k];
         const real h_star_z = s[20*w + k];
-        const real M_ta_xy = M_ta_prps_xy + h_star_z;
-        const real M_ta_prps_xz = sums[8*w + k];
+        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+        const real M_ta_xz_of_legs = sums[8*w + k];
         const real h_star_y = s[19*w + k];
-        const real M_ta_xz = M_ta_prps_xz - h_star_y;
-        const real M_ta_prps_yx = sums[9*w + k];
-        const real M_ta_yx = M_ta_prps_yx - h_star_z;
-        const real M_ta_prps_yz = sums[11*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yx_of_legs = sums[9*w + k];
+        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+        const real M_ta_yz_of_legs = sums[11*w + k];
         const real h_star_x = s[18*w + k];
-        const real M_ta_yz = M_ta_prps_yz + h_star_x;
-        const real M_ta_prps_zx = sums[12*w + k];
-        const real M_ta_zx = M_ta_prps_zx + h_star_y;
-        const real M_ta_prps_zy = sums[13*w + k];
-        const real M_ta_zy = M_ta_prps_zy - h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+        const real M_ta_zx_of_legs = sums[12*w + k];
+        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+        const real M_ta_zy_of_legs = sums[13*w + k];
+        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[21*w + k];
-        const real M_aa_prps_xx = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_prps_xx;
+        const real M_aa_xx_of_legs = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[22*w + k];
-        const real M_aa_prps_xy = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_prps_xy;
+        const real M_aa_xy_of_legs = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[23*w + k];
-        const real M_aa_prps_xz = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_prps_xz;
+        const real M_aa_xz_of_legs = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
         const real J_star_yy = s[24*w + k];
-        const real M_aa_prps_yy = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_prps_yy;
+        const real M_aa_yy_of_legs = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
         const real J_star_yz = s[25*w + k];
-        const real M_aa_prps_yz = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_prps_yz;
+        const real M_aa_yz_of_legs = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[26*w + k];
-        const real M_aa_prps_zz = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_prps_zz;
+        const real M_aa_zz_of_legs = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real Z_t_prps_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + Z_t_prps_x;
+        const real Z_t_x_of_legs = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[28*w + k];
-        const real Z_t_prps_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + Z_t_prps_y;
+        const real Z_t_y_of_legs = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = s[29*w + k];
-        const real Z_t_prps_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + Z_t_prps_z;
+        const real Z_t_z_of_legs = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_prps_x = sums[24*w + k];
+        const real Z_a_x_of_legs = sums[24*w + k];
         const real Z_q_x = s[30*w + k];
-        const real Z_a_x = Z_a_prps_x + Z_q_x;
-        const real Z_a_prps_y = sums[25*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[25*w + k];
         const real Z_q_y = s[31*w + k];
-        const real Z_a_y = Z_a_prps_y + Z_q_y;
-        const real Z_a_prps_z = sums[26*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[26*w + k];
         const real Z_q_z = s[32*w + k];
-        const real Z_a_z = Z_a_prps_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
+        M[0*NV*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[6*w + k] = M_tt_xy;
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[12*w + k] = M_tt_xz;
-        M[7*w + k] = M_tt_yy;
+        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*NV*w + k] = M_tt_xz;
+        M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
-        M[8*w + k] = M_tt_yz;
-        M[13*w + k] = M_tt_yz;
-        M[14*w + k] = M_tt_zz;
+        M[(NV + 2)*w + k] = M_tt_yz;
+        M[(2*NV + 1)*w + k] = M_tt_yz;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[18*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[24*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[30*w + k] = M_ta_xz;
-        M[9*w + k] = M_ta_yx;
-        M[19*w + k] = M_ta_yx;
+        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*NV*w + k] = M_ta_xx;
+        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*NV*w + k] = M_ta_xy;
+        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*NV*w + k] = M_ta_xz;
+        M[(NV + 3)*w + k] = M_ta_yx;
+        M[(3*NV + 1)*w + k] = M_ta_yx;
         const real M_ta_yy = sums[10*w + k];
-        M[10*w + k] = M_ta_yy;
-        M[25*w + k] = M_ta_yy;
-        M[11*w + k] = M_ta_yz;
-        M[31*w + k] = M_ta_yz;
-        M[15*w + k] = M_ta_zx;
-        M[20*w + k] = M_ta_zx;
-        M[16*w + k] = M_ta_zy;
-        M[26*w + k] = M_ta_zy;
+        M[(NV + 4)*w + k] = M_ta_yy;
+        M[(4*NV + 1)*w + k] = M_ta_yy;
+        M[(NV + 5)*w + k] = M_ta_yz;
+        M[(5*NV + 1)*w + k] = M_ta_yz;
+        M[(2*NV + 3)*w + k] = M_ta_zx;
+        M[(3*NV + 2)*w + k] = M_ta_zx;
+        M[(2*NV + 4)*w + k] = M_ta_zy;
+        M[(4*NV + 2)*w + k] = M_ta_zy;
         const real M_ta_zz = sums[14*w + k];
-        M[17*w + k] = M_ta_zz;
-        M[32*w + k] = M_ta_zz;
+        M[(2*NV + 5)*w + k] = M_ta_zz;
+        M[(5*NV + 2)*w + k] = M_ta_zz;
         /* (M_aa) rotational block of M */
-        M[21*w + k] = M_aa_xx;
-        M[22*w + k] = M_aa_xy;
-        M[27*w + k] = M_aa_xy;
-        M[23*w + k] = M_aa_xz;
-        M[33*w + k] = M_aa_xz;
-        M[28*w + k] = M_aa_yy;
-        M[29*w + k] = M_aa_yz;
-        M[34*w + k] = M_aa_yz;
-        M[35*w + k] = M_aa_zz;
+        M[(3*NV + 3)*w + k] = M_aa_xx;
+        M[(3*NV + 4)*w + k] = M_aa_xy;
+        M[(4*NV + 3)*w + k] = M_aa_xy;
+        M[(3*NV + 5)*w + k] = M_aa_xz;
+        M[(5*NV + 3)*w + k] = M_aa_xz;
+        M[(4*NV + 4)*w + k] = M_aa_yy;
+        M[(4*NV + 5)*w + k] = M_aa_yz;
+        M[(5*NV + 4)*w + k] = M_aa_yz;
+        M[(5*NV + 5)*w + k] = M_aa_zz;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -1849,14 +1871,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[33] = {0}, sums[27] = {0}, terms_prps[27*LEGS(3)] = {0}, o_prps[14*LEGS(3)] = {0};
+    real s[33] = {0};
+    real sums[27] = {0};
+    real terms_prps[27*LEGS(LEGS_OF_prps)] = {0};
+    real o_prps[14*LEGS(LEGS_OF_prps)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_prps(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prps, o_prps);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        dynamics_place_prps(1, LEGS(3), o_prps, leg, leg, H, t);
+    dynamics_legs_prps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prps), 0, terms_prps, o_prps);
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
+        dynamics_place_prps(1, LEGS(LEGS_OF_prps), o_prps, leg, leg, H, t);
     }
     for (size_t n = 0; n < 27; ++n) {
-        sums[n] = total(terms_prps + n*LEGS(3), 3);
+        sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -1864,17 +1889,19 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[33*LANES], sums[27*LANES], o_prps[14*LANES];
+    real s[33*LANES];
+    real sums[27*LANES];
+    real o_prps[14*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
         dynamics_legs_prps(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prps);
         dynamics_place_prps(LANES, LANES, o_prps, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
-/* ---- M: 291 mul, 273 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2098,31 +2125,31 @@ INLINE void M_legs_prps(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real prps_M_aa_t_5 = prps_M_ta_t_5*prps_q_z - prps_M_ta_t_12*prps_q_x;
         const real prps_M_aa_t_6 = prps_M_ta_t_9*prps_q_x - prps_M_ta_t_5*prps_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + prps_Q_xx : prps_Q_xx;  /* M_tt_prps_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prps_Q_xy : prps_Q_xy;  /* M_tt_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prps_Q_xz : prps_Q_xz;  /* M_tt_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + prps_Q_yy : prps_Q_yy;  /* M_tt_prps_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + prps_Q_yz : prps_Q_yz;  /* M_tt_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prps_Q_zz : prps_Q_zz;  /* M_tt_prps_zz */
+        gather(&terms[0*count + k], add, prps_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, prps_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, prps_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, prps_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, prps_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, prps_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + prps_M_ta_t_3 : prps_M_ta_t_3;  /* M_ta_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + prps_M_ta_t_4 : prps_M_ta_t_4;  /* M_ta_prps_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + prps_M_ta_t_5 : prps_M_ta_t_5;  /* M_ta_prps_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + prps_M_ta_t_6 : prps_M_ta_t_6;  /* M_ta_prps_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + -prps_M_ta_t_8 : -prps_M_ta_t_8;  /* M_ta_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + prps_M_ta_t_9 : prps_M_ta_t_9;  /* M_ta_prps_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + prps_M_ta_t_10 : prps_M_ta_t_10;  /* M_ta_prps_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + prps_M_ta_t_11 : prps_M_ta_t_11;  /* M_ta_prps_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + prps_M_ta_t_12 : prps_M_ta_t_12;  /* M_ta_zz */
+        gather(&terms[6*count + k], add, prps_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, prps_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, prps_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, prps_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, -prps_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, prps_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, prps_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, prps_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, prps_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + prps_M_aa_t : prps_M_aa_t;  /* M_aa_prps_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + prps_M_aa_t_2 : prps_M_aa_t_2;  /* M_aa_prps_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + prps_M_aa_t_3 : prps_M_aa_t_3;  /* M_aa_prps_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + prps_M_aa_t_4 : prps_M_aa_t_4;  /* M_aa_prps_yy */
-        terms[19*count + k] = add ? terms[19*count + k] + prps_M_aa_t_5 : prps_M_aa_t_5;  /* M_aa_prps_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + prps_M_aa_t_6 : prps_M_aa_t_6;  /* M_aa_prps_zz */
-        o[0*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
+        gather(&terms[15*count + k], add, prps_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, prps_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, prps_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, prps_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, prps_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, prps_M_aa_t_6);  /* M_aa_zz_of_legs */
+        o[0*count + k] = UNLESS(magnitude(prps_rho2_2) > LEAST_1) + UNLESS(magnitude(prps_root_2)
+            > LEAST_2);
     }
 }
 
@@ -2138,93 +2165,93 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_prps_xx = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_prps_xx + m_star;
-        const real M_tt_prps_yy = sums[3*w + k];
-        const real M_tt_yy = M_tt_prps_yy + m_star;
-        const real M_tt_prps_zz = sums[5*w + k];
-        const real M_tt_zz = M_tt_prps_zz + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_prps_xy = sums[7*w + k];
+        const real M_ta_xy_of_legs = sums[7*w + k];
         const real h_star_z = s[14*w + k];
-        const real M_ta_xy = M_ta_prps_xy + h_star_z;
-        const real M_ta_prps_xz = sums[8*w + k];
+        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+        const real M_ta_xz_of_legs = sums[8*w + k];
         const real h_star_y = s[13*w + k];
-        const real M_ta_xz = M_ta_prps_xz - h_star_y;
-        const real M_ta_prps_yx = sums[9*w + k];
-        const real M_ta_yx = M_ta_prps_yx - h_star_z;
-        const real M_ta_prps_yz = sums[11*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yx_of_legs = sums[9*w + k];
+        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+        const real M_ta_yz_of_legs = sums[11*w + k];
         const real h_star_x = s[12*w + k];
-        const real M_ta_yz = M_ta_prps_yz + h_star_x;
-        const real M_ta_prps_zx = sums[12*w + k];
-        const real M_ta_zx = M_ta_prps_zx + h_star_y;
-        const real M_ta_prps_zy = sums[13*w + k];
-        const real M_ta_zy = M_ta_prps_zy - h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+        const real M_ta_zx_of_legs = sums[12*w + k];
+        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+        const real M_ta_zy_of_legs = sums[13*w + k];
+        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[15*w + k];
-        const real M_aa_prps_xx = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_prps_xx;
+        const real M_aa_xx_of_legs = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[16*w + k];
-        const real M_aa_prps_xy = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_prps_xy;
+        const real M_aa_xy_of_legs = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[17*w + k];
-        const real M_aa_prps_xz = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_prps_xz;
+        const real M_aa_xz_of_legs = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
         const real J_star_yy = s[18*w + k];
-        const real M_aa_prps_yy = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_prps_yy;
+        const real M_aa_yy_of_legs = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
         const real J_star_yz = s[19*w + k];
-        const real M_aa_prps_yz = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_prps_yz;
+        const real M_aa_yz_of_legs = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[20*w + k];
-        const real M_aa_prps_zz = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_prps_zz;
+        const real M_aa_zz_of_legs = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
+        M[0*NV*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[6*w + k] = M_tt_xy;
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[12*w + k] = M_tt_xz;
-        M[7*w + k] = M_tt_yy;
+        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*NV*w + k] = M_tt_xz;
+        M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
-        M[8*w + k] = M_tt_yz;
-        M[13*w + k] = M_tt_yz;
-        M[14*w + k] = M_tt_zz;
+        M[(NV + 2)*w + k] = M_tt_yz;
+        M[(2*NV + 1)*w + k] = M_tt_yz;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[18*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[24*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[30*w + k] = M_ta_xz;
-        M[9*w + k] = M_ta_yx;
-        M[19*w + k] = M_ta_yx;
+        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*NV*w + k] = M_ta_xx;
+        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*NV*w + k] = M_ta_xy;
+        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*NV*w + k] = M_ta_xz;
+        M[(NV + 3)*w + k] = M_ta_yx;
+        M[(3*NV + 1)*w + k] = M_ta_yx;
         const real M_ta_yy = sums[10*w + k];
-        M[10*w + k] = M_ta_yy;
-        M[25*w + k] = M_ta_yy;
-        M[11*w + k] = M_ta_yz;
-        M[31*w + k] = M_ta_yz;
-        M[15*w + k] = M_ta_zx;
-        M[20*w + k] = M_ta_zx;
-        M[16*w + k] = M_ta_zy;
-        M[26*w + k] = M_ta_zy;
+        M[(NV + 4)*w + k] = M_ta_yy;
+        M[(4*NV + 1)*w + k] = M_ta_yy;
+        M[(NV + 5)*w + k] = M_ta_yz;
+        M[(5*NV + 1)*w + k] = M_ta_yz;
+        M[(2*NV + 3)*w + k] = M_ta_zx;
+        M[(3*NV + 2)*w + k] = M_ta_zx;
+        M[(2*NV + 4)*w + k] = M_ta_zy;
+        M[(4*NV + 2)*w + k] = M_ta_zy;
         const real M_ta_zz = sums[14*w + k];
-        M[17*w + k] = M_ta_zz;
-        M[32*w + k] = M_ta_zz;
+        M[(2*NV + 5)*w + k] = M_ta_zz;
+        M[(5*NV + 2)*w + k] = M_ta_zz;
         /* (M_aa) rotational block of M */
-        M[21*w + k] = M_aa_xx;
-        M[22*w + k] = M_aa_xy;
-        M[27*w + k] = M_aa_xy;
-        M[23*w + k] = M_aa_xz;
-        M[33*w + k] = M_aa_xz;
-        M[28*w + k] = M_aa_yy;
-        M[29*w + k] = M_aa_yz;
-        M[34*w + k] = M_aa_yz;
-        M[35*w + k] = M_aa_zz;
+        M[(3*NV + 3)*w + k] = M_aa_xx;
+        M[(3*NV + 4)*w + k] = M_aa_xy;
+        M[(4*NV + 3)*w + k] = M_aa_xy;
+        M[(3*NV + 5)*w + k] = M_aa_xz;
+        M[(5*NV + 3)*w + k] = M_aa_xz;
+        M[(4*NV + 4)*w + k] = M_aa_yy;
+        M[(4*NV + 5)*w + k] = M_aa_yz;
+        M[(5*NV + 4)*w + k] = M_aa_yz;
+        M[(5*NV + 5)*w + k] = M_aa_zz;
         t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
             M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
             (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
@@ -2234,31 +2261,36 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0}, sums[21] = {0}, terms_prps[21*LEGS(3)] = {0}, o_prps[1*LEGS(3)] = {0};
+    real s[21] = {0};
+    real sums[21] = {0};
+    real terms_prps[21*LEGS(LEGS_OF_prps)] = {0};
+    real o_prps[LEGS(LEGS_OF_prps)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_prps(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prps, o_prps);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        M_place_prps(1, LEGS(3), o_prps, leg, t);
+    M_legs_prps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prps), 0, terms_prps, o_prps);
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
+        M_place_prps(1, LEGS(LEGS_OF_prps), o_prps, leg, t);
     }
     for (size_t n = 0; n < 21; ++n) {
-        sums[n] = total(terms_prps + n*LEGS(3), 3);
+        sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
     M_after(m, 1, s, sums, M, t);
 }
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES], sums[21*LANES], o_prps[1*LANES];
+    real s[21*LANES];
+    real sums[21*LANES];
+    real o_prps[LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
         M_legs_prps(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prps);
         M_place_prps(LANES, LANES, o_prps, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
 }
 
-/* ---- Z: 354 mul, 267 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
     *t)
 {
@@ -2547,15 +2579,15 @@ INLINE void Z_legs_prps(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real prps_Z_a_t_2 = prps_U_x*prps_q_z - prps_U_z*prps_q_x;
         const real prps_Z_a_t_3 = prps_U_y*prps_q_x - prps_U_x*prps_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + prps_U_x : prps_U_x;  /* Z_t_prps_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prps_U_y : prps_U_y;  /* Z_t_prps_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prps_U_z : prps_U_z;  /* Z_t_prps_z */
+        gather(&terms[0*count + k], add, prps_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, prps_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, prps_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[3*count + k] = add ? terms[3*count + k] + prps_Z_a_t : prps_Z_a_t;  /* Z_a_prps_x */
-        terms[4*count + k] = add ? terms[4*count + k] + prps_Z_a_t_2 : prps_Z_a_t_2;  /* Z_a_prps_y */
-        terms[5*count + k] = add ? terms[5*count + k] + prps_Z_a_t_3 : prps_Z_a_t_3;  /* Z_a_prps_z */
-        o[0*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
+        gather(&terms[3*count + k], add, prps_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[4*count + k], add, prps_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[5*count + k], add, prps_Z_a_t_3);  /* Z_a_z_of_legs */
+        o[0*count + k] = UNLESS(magnitude(prps_rho2_2) > LEAST_1) + UNLESS(magnitude(prps_root_2)
+            > LEAST_2);
     }
 }
 
@@ -2571,24 +2603,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real Z_t_prps_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_prps_x;
+        const real Z_t_x_of_legs = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[19*w + k];
-        const real Z_t_prps_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_prps_y;
+        const real Z_t_y_of_legs = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = s[20*w + k];
-        const real Z_t_prps_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_prps_z;
+        const real Z_t_z_of_legs = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_prps_x = sums[3*w + k];
+        const real Z_a_x_of_legs = sums[3*w + k];
         const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_prps_x + Z_q_x;
-        const real Z_a_prps_y = sums[4*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[4*w + k];
         const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_prps_y + Z_q_y;
-        const real Z_a_prps_z = sums[5*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[5*w + k];
         const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_prps_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -2603,31 +2635,36 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0}, sums[6] = {0}, terms_prps[6*LEGS(3)] = {0}, o_prps[1*LEGS(3)] = {0};
+    real s[24] = {0};
+    real sums[6] = {0};
+    real terms_prps[6*LEGS(LEGS_OF_prps)] = {0};
+    real o_prps[LEGS(LEGS_OF_prps)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_prps(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prps, o_prps);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        Z_place_prps(1, LEGS(3), o_prps, leg, t);
+    Z_legs_prps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prps), 0, terms_prps, o_prps);
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
+        Z_place_prps(1, LEGS(LEGS_OF_prps), o_prps, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_prps + n*LEGS(3), 3);
+        sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
     Z_after(1, s, sums, Z, t);
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES], sums[6*LANES], o_prps[1*LANES];
+    real s[24*LANES];
+    real sums[6*LANES];
+    real o_prps[LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
         Z_legs_prps(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prps);
         Z_place_prps(LANES, LANES, o_prps, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
-/* ---- H: 114 mul, 78 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- H ---- */
 INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2770,8 +2807,8 @@ INLINE void H_legs_prps(const prepared *m, size_t w, size_t leg, size_t legs, co
         o[13*count + k] = ((prps_base_frame_xz + (prps_base_frame_yz + prps_base_frame_zz)) +
             (prps_H_a_1_x + (prps_H_a_1_y + prps_H_a_1_z))) + ((prps_w_3_x + (prps_w_3_y +
             prps_w_3_z)) + (prps_H_a_3_x + (prps_H_a_3_y + prps_H_a_3_z)));
-        o[12*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
+        o[12*count + k] = UNLESS(magnitude(prps_rho2_2) > LEAST_1) + UNLESS(magnitude(prps_root_2)
+            > LEAST_2);
     }
 }
 
@@ -2779,18 +2816,18 @@ INLINE void H_place_prps(size_t w, size_t count, const real *o, size_t leg, size
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2*leg)*w + k] = o[0*count + first + k];
-        H[(6 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(12 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(18 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(24 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(30 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(7 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(13 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(19 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(25 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(31 + 2*leg)*w + k] = o[11*count + first + k];
+        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[(NU + 2*leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
+        H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
+        H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
+        H[(4*NU + 1 + 2*leg)*w + k] = o[10*count + first + k];
+        H[(5*NU + 1 + 2*leg)*w + k] = o[11*count + first + k];
         t->singular[k] += o[12*count + first + k];
         t->total[k] += o[13*count + first + k];
     }
@@ -2798,25 +2835,27 @@ INLINE void H_place_prps(size_t w, size_t count, const real *o, size_t leg, size
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0}, o_prps[14*LEGS(3)] = {0};
+    real s[12] = {0};
+    real o_prps[14*LEGS(LEGS_OF_prps)] = {0};
     H_before(1, X, s, t);
-    H_legs_prps(m, 1, 0, 1, s, 0, LEGS(3), o_prps);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        H_place_prps(1, LEGS(3), o_prps, leg, leg, H, t);
+    H_legs_prps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prps), o_prps);
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
+        H_place_prps(1, LEGS(LEGS_OF_prps), o_prps, leg, leg, H, t);
     }
 }
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES], o_prps[14*LANES];
+    real s[12*LANES];
+    real o_prps[14*LANES];
     H_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
         H_legs_prps(m, LANES, leg, 0, s, 1, LANES, o_prps);
         H_place_prps(LANES, LANES, o_prps, leg, 0, H, t);
     }
 }
 
-/* ---- required: 432 mul, 339 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- required ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
     *A, real *s, verdict *t)
 {
@@ -3152,13 +3191,13 @@ INLINE void required_legs_prps(const prepared *m, size_t w, size_t leg, size_t l
         const real prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x;
         const real prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + prps_c_x : prps_c_x;  /* R_t_t */
-        terms[1*count + k] = add ? terms[1*count + k] + prps_c_y : prps_c_y;  /* R_t_t_2 */
-        terms[2*count + k] = add ? terms[2*count + k] + prps_c_z : prps_c_z;  /* R_t_t_3 */
+        gather(&terms[0*count + k], add, prps_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, prps_c_y);  /* R_t_y_of_legs */
+        gather(&terms[2*count + k], add, prps_c_z);  /* R_t_z_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[3*count + k] = add ? terms[3*count + k] + prps_R_a_t : prps_R_a_t;  /* R_a_prps_x */
-        terms[4*count + k] = add ? terms[4*count + k] + prps_R_a_t_2 : prps_R_a_t_2;  /* R_a_prps_y */
-        terms[5*count + k] = add ? terms[5*count + k] + prps_R_a_t_3 : prps_R_a_t_3;  /* R_a_prps_z */
+        gather(&terms[3*count + k], add, prps_R_a_t);  /* R_a_x_of_legs */
+        gather(&terms[4*count + k], add, prps_R_a_t_2);  /* R_a_y_of_legs */
+        gather(&terms[5*count + k], add, prps_R_a_t_3);  /* R_a_z_of_legs */
         /* (prps-w_1) reciprocal vector 1 */
         o[0*count + k] = prps_base_frame_xz;
         o[1*count + k] = prps_base_frame_yz;
@@ -3175,8 +3214,8 @@ INLINE void required_legs_prps(const prepared *m, size_t w, size_t leg, size_t l
         o[9*count + k] = prps_H_a_3_x;
         o[10*count + k] = prps_H_a_3_y;
         o[11*count + k] = prps_H_a_3_z;
-        o[12*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
+        o[12*count + k] = UNLESS(magnitude(prps_rho2_2) > LEAST_1) + UNLESS(magnitude(prps_root_2)
+            > LEAST_2);
     }
 }
 
@@ -3184,18 +3223,18 @@ INLINE void required_place_prps(size_t w, size_t count, const real *o, size_t le
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2*leg)*w + k] = o[0*count + first + k];
-        H[(6 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(12 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(18 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(24 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(30 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(7 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(13 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(19 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(25 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(31 + 2*leg)*w + k] = o[11*count + first + k];
+        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[(NU + 2*leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
+        H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
+        H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
+        H[(4*NU + 1 + 2*leg)*w + k] = o[10*count + first + k];
+        H[(5*NU + 1 + 2*leg)*w + k] = o[11*count + first + k];
         t->singular[k] += o[12*count + first + k];
     }
 }
@@ -3204,25 +3243,25 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
-        const real R_t_t = sums[0*w + k];
+        const real R_t_x_of_legs = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real R_t_x = f_p_x - R_t_t;
-        const real R_t_t_2 = sums[1*w + k];
+        const real R_t_x = f_p_x - R_t_x_of_legs;
+        const real R_t_y_of_legs = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real R_t_y = f_p_y - R_t_t_2;
-        const real R_t_t_3 = sums[2*w + k];
+        const real R_t_y = f_p_y - R_t_y_of_legs;
+        const real R_t_z_of_legs = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real R_t_z = f_p_z - R_t_t_3;
+        const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_prps_x = sums[3*w + k];
+        const real R_a_x_of_legs = sums[3*w + k];
         const real mu_p_x = s[27*w + k];
-        const real R_a_x = R_a_prps_x + mu_p_x;
-        const real R_a_prps_y = sums[4*w + k];
+        const real R_a_x = R_a_x_of_legs + mu_p_x;
+        const real R_a_y_of_legs = sums[4*w + k];
         const real mu_p_y = s[28*w + k];
-        const real R_a_y = R_a_prps_y + mu_p_y;
-        const real R_a_prps_z = sums[5*w + k];
+        const real R_a_y = R_a_y_of_legs + mu_p_y;
+        const real R_a_z_of_legs = sums[5*w + k];
         const real mu_p_z = s[29*w + k];
-        const real R_a_z = R_a_prps_z + mu_p_z;
+        const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -3237,14 +3276,17 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[30] = {0}, sums[6] = {0}, terms_prps[6*LEGS(3)] = {0}, o_prps[13*LEGS(3)] = {0};
+    real s[30] = {0};
+    real sums[6] = {0};
+    real terms_prps[6*LEGS(LEGS_OF_prps)] = {0};
+    real o_prps[13*LEGS(LEGS_OF_prps)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_prps(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prps, o_prps);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        required_place_prps(1, LEGS(3), o_prps, leg, leg, H, t);
+    required_legs_prps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prps), 0, terms_prps, o_prps);
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
+        required_place_prps(1, LEGS(LEGS_OF_prps), o_prps, leg, leg, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_prps + n*LEGS(3), 3);
+        sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
     required_after(1, s, sums, required);
 }
@@ -3252,17 +3294,19 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[30*LANES], sums[6*LANES], o_prps[13*LANES];
+    real s[30*LANES];
+    real sums[6*LANES];
+    real o_prps[13*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
         required_legs_prps(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prps);
         required_place_prps(LANES, LANES, o_prps, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
-/* ---- inverse_kinematics: 69 mul, 57 add, 3 div, 3 sqrt, 3 trig, every leg counted ---- */
+/* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3379,8 +3423,8 @@ INLINE void inverse_kinematics_legs_prps(const prepared *m, size_t w, size_t leg
         /* (prps-q_3) displacement of joint 3 */
         o[2*count + k] = prps_root_2;
         o[4*count + k] = prps_S_in_axes0_z + (prps_q_2 + prps_root_2);
-        o[3*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
+        o[3*count + k] = UNLESS(magnitude(prps_rho2_2) > LEAST_1) + UNLESS(magnitude(prps_root_2)
+            > LEAST_2);
     }
 }
 
@@ -3388,7 +3432,7 @@ INLINE void inverse_kinematics_place_prps(size_t w, size_t count, const real *o,
     size_t first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(3*leg)*w + k] = o[0*count + first + k];
+        q[3*leg*w + k] = o[0*count + first + k];
         q[(1 + 3*leg)*w + k] = o[1*count + first + k];
         q[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -3398,25 +3442,27 @@ INLINE void inverse_kinematics_place_prps(size_t w, size_t count, const real *o,
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0}, o_prps[5*LEGS(3)] = {0};
+    real s[12] = {0};
+    real o_prps[5*LEGS(LEGS_OF_prps)] = {0};
     inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_prps(m, 1, 0, 1, s, 0, LEGS(3), o_prps);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        inverse_kinematics_place_prps(1, LEGS(3), o_prps, leg, leg, q, t);
+    inverse_kinematics_legs_prps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prps), o_prps);
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
+        inverse_kinematics_place_prps(1, LEGS(LEGS_OF_prps), o_prps, leg, leg, q, t);
     }
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES], o_prps[5*LANES];
+    real s[12*LANES];
+    real o_prps[5*LANES];
     inverse_kinematics_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
         inverse_kinematics_legs_prps(m, LANES, leg, 0, s, 1, LANES, o_prps);
         inverse_kinematics_place_prps(LANES, LANES, o_prps, leg, 0, q, t);
     }
 }
 
-/* ---- joint_rates: 144 mul, 105 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates ---- */
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3575,8 +3621,8 @@ INLINE void joint_rates_legs_prps(const prepared *m, size_t w, size_t leg, size_
         /* (prps-qd_3) rate of joint 3 */
         o[2*count + k] = prps_S_dot_in_axes2_x;
         o[4*count + k] = prps_S_dot_in_axes2_z + (prps_qd_2 + prps_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
+        o[3*count + k] = UNLESS(magnitude(prps_rho2_2) > LEAST_1) + UNLESS(magnitude(prps_root_2)
+            > LEAST_2);
     }
 }
 
@@ -3584,7 +3630,7 @@ INLINE void joint_rates_place_prps(size_t w, size_t count, const real *o, size_t
     first, real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(3*leg)*w + k] = o[0*count + first + k];
+        qd[3*leg*w + k] = o[0*count + first + k];
         qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
         qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -3594,26 +3640,28 @@ INLINE void joint_rates_place_prps(size_t w, size_t count, const real *o, size_t
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0}, o_prps[5*LEGS(3)] = {0};
+    real s[18] = {0};
+    real o_prps[5*LEGS(LEGS_OF_prps)] = {0};
     joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_prps(m, 1, 0, 1, s, 0, LEGS(3), o_prps);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_rates_place_prps(1, LEGS(3), o_prps, leg, leg, qd, t);
+    joint_rates_legs_prps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prps), o_prps);
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
+        joint_rates_place_prps(1, LEGS(LEGS_OF_prps), o_prps, leg, leg, qd, t);
     }
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES], o_prps[5*LANES];
+    real s[18*LANES];
+    real o_prps[5*LANES];
     joint_rates_before(LANES, X, V, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
         joint_rates_legs_prps(m, LANES, leg, 0, s, 1, LANES, o_prps);
         joint_rates_place_prps(LANES, LANES, o_prps, leg, 0, qd, t);
     }
 }
 
-/* ---- joint_accelerations: 213 mul, 159 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations ---- */
 INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
     *s, verdict *t)
 {
@@ -3826,8 +3874,8 @@ INLINE void joint_accelerations_legs_prps(const prepared *m, size_t w, size_t le
         /* (prps-qdd_3) acceleration of joint 3 */
         o[2*count + k] = prps_rel_in_axes2_x;
         o[4*count + k] = prps_S_ddot_in_axes2_z + (prps_qdd_2 + prps_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
+        o[3*count + k] = UNLESS(magnitude(prps_rho2_2) > LEAST_1) + UNLESS(magnitude(prps_root_2)
+            > LEAST_2);
     }
 }
 
@@ -3835,7 +3883,7 @@ INLINE void joint_accelerations_place_prps(size_t w, size_t count, const real *o
     size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(3*leg)*w + k] = o[0*count + first + k];
+        qdd[3*leg*w + k] = o[0*count + first + k];
         qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
         qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -3846,26 +3894,28 @@ INLINE void joint_accelerations_place_prps(size_t w, size_t count, const real *o
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0}, o_prps[5*LEGS(3)] = {0};
+    real s[24] = {0};
+    real o_prps[5*LEGS(LEGS_OF_prps)] = {0};
     joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_prps(m, 1, 0, 1, s, 0, LEGS(3), o_prps);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_accelerations_place_prps(1, LEGS(3), o_prps, leg, leg, qdd, t);
+    joint_accelerations_legs_prps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prps), o_prps);
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
+        joint_accelerations_place_prps(1, LEGS(LEGS_OF_prps), o_prps, leg, leg, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES], o_prps[5*LANES];
+    real s[24*LANES];
+    real o_prps[5*LANES];
     joint_accelerations_before(LANES, X, V, A, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
         joint_accelerations_legs_prps(m, LANES, leg, 0, s, 1, LANES, o_prps);
         joint_accelerations_place_prps(LANES, LANES, o_prps, leg, 0, qdd, t);
     }
 }
 
-/* ---- legs: 294 mul, 222 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs ---- */
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
     *t)
 {
@@ -4130,40 +4180,41 @@ INLINE void legs_legs_prps(const prepared *m, size_t w, size_t leg, size_t legs,
         o[6*count + k] = axis_x_prps_axes2_x;
         o[7*count + k] = axis_x_prps_axes2_y;
         o[8*count + k] = axis_x_prps_axes2_z;
-        o[9*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
+        o[9*count + k] = UNLESS(magnitude(prps_rho2_2) > LEAST_1) + UNLESS(magnitude(prps_root_2)
+            > LEAST_2);
     }
 }
 
 INLINE void legs_place_prps(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o[0*count + first + k];
-        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        leg_force[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        drive[(6*leg)*w + k] = o[3*count + first + k];
-        drive[(1 + 6*leg)*w + k] = o[4*count + first + k];
-        drive[(2 + 6*leg)*w + k] = o[5*count + first + k];
-        drive[(3 + 6*leg)*w + k] = o[6*count + first + k];
-        drive[(4 + 6*leg)*w + k] = o[7*count + first + k];
-        drive[(5 + 6*leg)*w + k] = o[8*count + first + k];
+        leg_force[3*leg*w + k] = o[0*count + first + k];
+        leg_force[(3*leg + 1)*w + k] = o[1*count + first + k];
+        leg_force[(3*leg + 2)*w + k] = o[2*count + first + k];
+        actuator[3*2*leg*w + k] = o[3*count + first + k];
+        actuator[(3*2*leg + 1)*w + k] = o[4*count + first + k];
+        actuator[(3*2*leg + 2)*w + k] = o[5*count + first + k];
+        actuator[(3*(1 + 2*leg))*w + k] = o[6*count + first + k];
+        actuator[(3*(1 + 2*leg) + 1)*w + k] = o[7*count + first + k];
+        actuator[(3*(1 + 2*leg) + 2)*w + k] = o[8*count + first + k];
         t->singular[k] += o[9*count + first + k];
     }
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
-    real s[24] = {0}, o_prps[10*LEGS(3)] = {0};
+    real s[24] = {0};
+    real o_prps[10*LEGS(LEGS_OF_prps)] = {0};
     legs_before(1, X, V, A, s, t);
-    legs_legs_prps(m, 1, 0, 1, s, 0, LEGS(3), o_prps);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        legs_place_prps(1, LEGS(3), o_prps, leg, leg, leg_force, drive, t);
+    legs_legs_prps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prps), o_prps);
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
+        legs_place_prps(1, LEGS(LEGS_OF_prps), o_prps, leg, leg, leg_force, actuator, t);
     }
 }
 
-/* ---- potential: 123 mul, 129 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -4318,9 +4369,9 @@ INLINE void potential_legs_prps(const prepared *m, size_t w, size_t leg, size_t 
             prps_g_in_axes0_z*(prps_h_1_in_spec0_z + prps_h_2_in_spec2_z + prps_h_3_in_spec2_z +
             prps_link1_mass*prps_potential_t_5 + prps_link2_mass*prps_potential_t_5);
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + prps_potential_t_6 : prps_potential_t_6;  /* potential_t_2 */
-        o[0*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
+        gather(&terms[0*count + k], add, prps_potential_t_6);  /* potential_of_legs */
+        o[0*count + k] = UNLESS(magnitude(prps_rho2_2) > LEAST_1) + UNLESS(magnitude(prps_root_2)
+            > LEAST_2);
     }
 }
 
@@ -4335,9 +4386,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
+        const real potential_of_legs = sums[0*w + k];
         const real potential_t = s[12*w + k];
-        const real potential_t_2 = sums[0*w + k];
-        const real potential_ = -potential_t - potential_t_2;
+        const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
@@ -4345,19 +4396,22 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0}, sums[1] = {0}, terms_prps[1*LEGS(3)] = {0}, o_prps[1*LEGS(3)] = {0};
+    real s[13] = {0};
+    real sums[1] = {0};
+    real terms_prps[LEGS(LEGS_OF_prps)] = {0};
+    real o_prps[LEGS(LEGS_OF_prps)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_prps(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prps, o_prps);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        potential_place_prps(1, LEGS(3), o_prps, leg, t);
+    potential_legs_prps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prps), 0, terms_prps, o_prps);
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
+        potential_place_prps(1, LEGS(LEGS_OF_prps), o_prps, leg, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_prps + n*LEGS(3), 3);
+        sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
     potential_after(1, s, sums, potential);
 }
 
-/* ---- condition: 130 mul, 99 add, 3 div, 7 sqrt, 0 trig, every leg counted ---- */
+/* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
     verdict *t)
 {
@@ -4476,7 +4530,7 @@ INLINE void condition_legs_prps(const prepared *m, size_t w, size_t leg, size_t 
         const real prps_w_3_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2;
         const real prps_w_3_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2;
         /* (prps-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real prps_pivot_size = magnitude(prps_rho2_2);
         const real prps_pivot_size_2 = magnitude(prps_root_2);
         const real prps_least_pivots = lesser(R(1.3333333333333333)*root(prps_pivot_size),
@@ -4502,7 +4556,7 @@ INLINE void condition_legs_prps(const prepared *m, size_t w, size_t leg, size_t 
         const real prps_spread_t_4 = prps_spread_t*prps_spread_t + prps_spread_t_2*prps_spread_t_2
             + prps_spread_t_3*prps_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + prps_spread_t_4 : prps_spread_t_4;  /* spread_prps */
+        gather(&terms[0*count + k], add, prps_spread_t_4);  /* spread_prps */
         /* (prps-w_1) reciprocal vector 1 */
         o[0*count + k] = prps_base_frame_xz;
         o[1*count + k] = prps_base_frame_yz;
@@ -4520,13 +4574,13 @@ INLINE void condition_legs_prps(const prepared *m, size_t w, size_t leg, size_t 
         o[10*count + k] = prps_H_a_3_y;
         o[11*count + k] = prps_H_a_3_z;
         /* (prps-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[12*count + k] = prps_least_pivots;
         o[14*count + k] = ((prps_base_frame_xz + (prps_base_frame_yz + prps_base_frame_zz)) +
             (prps_H_a_1_x + (prps_H_a_1_y + prps_H_a_1_z))) + ((prps_w_3_x + (prps_w_3_y +
             prps_w_3_z)) + ((prps_H_a_3_x + prps_H_a_3_y) + (prps_H_a_3_z + prps_least_pivots)));
-        o[13*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
-            UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
+        o[13*count + k] = UNLESS(magnitude(prps_rho2_2) > LEAST_1) + UNLESS(magnitude(prps_root_2)
+            > LEAST_2);
     }
 }
 
@@ -4534,19 +4588,19 @@ INLINE void condition_place_prps(size_t w, size_t count, const real *o, size_t l
     real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2*leg)*w + k] = o[0*count + first + k];
-        H[(6 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(12 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(18 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(24 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(30 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(7 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(13 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(19 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(25 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(31 + 2*leg)*w + k] = o[11*count + first + k];
-        pivots[(leg)*w + k] = o[12*count + first + k];
+        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[(NU + 2*leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
+        H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
+        H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
+        H[(4*NU + 1 + 2*leg)*w + k] = o[10*count + first + k];
+        H[(5*NU + 1 + 2*leg)*w + k] = o[11*count + first + k];
+        pivots[leg*w + k] = o[12*count + first + k];
         t->singular[k] += o[13*count + first + k];
         t->total[k] += o[14*count + first + k];
     }
@@ -4569,15 +4623,18 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[12] = {0}, sums[1] = {0}, terms_prps[1*LEGS(3)] = {0}, o_prps[15*LEGS(3)] = {0};
-    clear(reach, 3);
+    real s[12] = {0};
+    real sums[1] = {0};
+    real terms_prps[LEGS(LEGS_OF_prps)] = {0};
+    real o_prps[15*LEGS(LEGS_OF_prps)] = {0};
+    clear(reach, NL);
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_prps(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prps, o_prps);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        condition_place_prps(1, LEGS(3), o_prps, leg, leg, H, pivots, t);
+    condition_legs_prps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prps), 0, terms_prps, o_prps);
+    for (size_t leg = 0; leg < LEGS_OF_prps; ++leg) {
+        condition_place_prps(1, LEGS(LEGS_OF_prps), o_prps, leg, leg, H, pivots, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_prps + n*LEGS(3), 3);
+        sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
     condition_after(m, 1, sums, lengths, t);
 }
@@ -4588,109 +4645,109 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
-        check(36, 1, M_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(36, M_out);
+        refuse(NV*NV, M_out);
     }
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[7*LANES], M[36*LANES];
+    real X_in[NQ*LANES], M[NV*NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
     suspect(&why, code);
-    deliver(36, M, M_out);
+    deliver(NV*NV, M, M_out);
 }
 
 INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
-        check(6, 1, Z_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, Z_out);
+        refuse(NV, Z_out);
     }
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], Z[6*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
     suspect(&why, code);
-    deliver(6, Z, Z_out);
+    deliver(NV, Z, Z_out);
 }
 
 INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(36, 1, H_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(36, H_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[7*LANES], H[36*LANES];
+    real X_in[NQ*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
     suspect(&why, code);
-    deliver(36, H, H_out);
+    deliver(NV*NU, H, H_out);
 }
 
 INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, q_out, why.overflow);
+        check(NJ, 1, q_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, q_out);
+        refuse(NJ, q_out);
     }
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[7*LANES], q[9*LANES];
+    real X_in[NQ*LANES], q[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
     suspect(&why, code);
-    deliver(9, q, q_out);
+    deliver(NJ, q, q_out);
 }
 
 INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4698,32 +4755,32 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, qd_out, why.overflow);
+        check(NJ, 1, qd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, qd_out);
+        refuse(NJ, qd_out);
     }
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], qd[9*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
     suspect(&why, code);
-    deliver(9, qd, qd_out);
+    deliver(NJ, qd, qd_out);
 }
 
 INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
@@ -4731,34 +4788,34 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, qdd_out, why.overflow);
+        check(NJ, 1, qdd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, qdd_out);
+        refuse(NJ, qdd_out);
     }
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd[9*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    A = side_by_side(6, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
     suspect(&why, code);
-    deliver(9, qdd, qdd_out);
+    deliver(NJ, qdd, qdd_out);
 }
 
 INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4766,86 +4823,86 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(36, 1, M_out, why.overflow);
-        check(6, 1, Z_out, why.overflow);
-        check(36, 1, H_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(36, M_out);
-        refuse(6, Z_out);
-        refuse(36, H_out);
+        refuse(NV*NV, M_out);
+        refuse(NV, Z_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], M[36*LANES], Z[6*LANES], H[36*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     suspect(&why, code);
-    deliver(36, M, M_out);
-    deliver(6, Z, Z_out);
-    deliver(36, H, H_out);
+    deliver(NV*NV, M, M_out);
+    deliver(NV, Z, Z_out);
+    deliver(NV*NU, H, H_out);
 }
 
-INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
+INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
+    real *a, const real *b, real *x, real *unsure, real *total)
 {
     for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(1*stride + 0)*w + k];
-        real a01 = a[(1*stride + 1)*w + k];
-        real a02 = a[(1*stride + 2)*w + k];
-        real a03 = a[(1*stride + 3)*w + k];
-        real a04 = a[(1*stride + 4)*w + k];
-        real a05 = a[(1*stride + 5)*w + k];
-        real b0 = b[1*w + k];
-        real a10 = a[(2*stride + 0)*w + k];
-        real a11 = a[(2*stride + 1)*w + k];
-        real a12 = a[(2*stride + 2)*w + k];
-        real a13 = a[(2*stride + 3)*w + k];
-        real a14 = a[(2*stride + 4)*w + k];
-        real a15 = a[(2*stride + 5)*w + k];
-        real b1 = b[2*w + k];
-        real a20 = a[(0)*w + k];
-        real a21 = a[(1)*w + k];
-        real a22 = a[(2)*w + k];
-        real a23 = a[(3)*w + k];
-        real a24 = a[(4)*w + k];
-        real a25 = a[(5)*w + k];
-        real b2 = b[0*w + k];
-        real a30 = a[(4*stride + 0)*w + k];
-        real a31 = a[(4*stride + 1)*w + k];
-        real a32 = a[(4*stride + 2)*w + k];
-        real a33 = a[(4*stride + 3)*w + k];
-        real a34 = a[(4*stride + 4)*w + k];
-        real a35 = a[(4*stride + 5)*w + k];
-        real b3 = b[4*w + k];
-        real a40 = a[(5*stride + 0)*w + k];
-        real a41 = a[(5*stride + 1)*w + k];
-        real a42 = a[(5*stride + 2)*w + k];
-        real a43 = a[(5*stride + 3)*w + k];
-        real a44 = a[(5*stride + 4)*w + k];
-        real a45 = a[(5*stride + 5)*w + k];
-        real b4 = b[5*w + k];
-        real a50 = a[(3*stride + 0)*w + k];
-        real a51 = a[(3*stride + 1)*w + k];
-        real a52 = a[(3*stride + 2)*w + k];
-        real a53 = a[(3*stride + 3)*w + k];
-        real a54 = a[(3*stride + 4)*w + k];
-        real a55 = a[(3*stride + 5)*w + k];
-        real b5 = b[3*w + k];
+        real a00 = a[(order[0]*stride + 0)*w + k];
+        real a01 = a[(order[0]*stride + 1)*w + k];
+        real a02 = a[(order[0]*stride + 2)*w + k];
+        real a03 = a[(order[0]*stride + 3)*w + k];
+        real a04 = a[(order[0]*stride + 4)*w + k];
+        real a05 = a[(order[0]*stride + 5)*w + k];
+        real b0 = b[order[0]*w + k];
+        real a10 = a[(order[1]*stride + 0)*w + k];
+        real a11 = a[(order[1]*stride + 1)*w + k];
+        real a12 = a[(order[1]*stride + 2)*w + k];
+        real a13 = a[(order[1]*stride + 3)*w + k];
+        real a14 = a[(order[1]*stride + 4)*w + k];
+        real a15 = a[(order[1]*stride + 5)*w + k];
+        real b1 = b[order[1]*w + k];
+        real a20 = a[(order[2]*stride + 0)*w + k];
+        real a21 = a[(order[2]*stride + 1)*w + k];
+        real a22 = a[(order[2]*stride + 2)*w + k];
+        real a23 = a[(order[2]*stride + 3)*w + k];
+        real a24 = a[(order[2]*stride + 4)*w + k];
+        real a25 = a[(order[2]*stride + 5)*w + k];
+        real b2 = b[order[2]*w + k];
+        real a30 = a[(order[3]*stride + 0)*w + k];
+        real a31 = a[(order[3]*stride + 1)*w + k];
+        real a32 = a[(order[3]*stride + 2)*w + k];
+        real a33 = a[(order[3]*stride + 3)*w + k];
+        real a34 = a[(order[3]*stride + 4)*w + k];
+        real a35 = a[(order[3]*stride + 5)*w + k];
+        real b3 = b[order[3]*w + k];
+        real a40 = a[(order[4]*stride + 0)*w + k];
+        real a41 = a[(order[4]*stride + 1)*w + k];
+        real a42 = a[(order[4]*stride + 2)*w + k];
+        real a43 = a[(order[4]*stride + 3)*w + k];
+        real a44 = a[(order[4]*stride + 4)*w + k];
+        real a45 = a[(order[4]*stride + 5)*w + k];
+        real b4 = b[order[4]*w + k];
+        real a50 = a[(order[5]*stride + 0)*w + k];
+        real a51 = a[(order[5]*stride + 1)*w + k];
+        real a52 = a[(order[5]*stride + 2)*w + k];
+        real a53 = a[(order[5]*stride + 3)*w + k];
+        real a54 = a[(order[5]*stride + 4)*w + k];
+        real a55 = a[(order[5]*stride + 5)*w + k];
+        real b5 = b[order[5]*w + k];
         const real f0 = 1/a00;
         const real d1 = a00*a11 - a10*a01;
         const real f1 = a00/d1;
@@ -4937,8 +4994,8 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         const real f5 = a44/d5;
         const real g54 = a54*f4;
         b5 -= g54*b4;
-        const real x5 = (b5)*f5;
-        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x5 = b5*f5;
+        const real x4 = b4*f4 - a45*f4*x5;
         const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
         const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
         const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
@@ -4950,368 +5007,223 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         x[4*w + k] = x4;
         x[5*w + k] = x5;
         total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
-        const real most0 = larger(larger(larger(magnitude(g30), magnitude(g40)),
-            larger(magnitude(g50), magnitude(g31))), larger(larger(magnitude(g41),
-            magnitude(g51)), larger(magnitude(g32), larger(magnitude(g42), magnitude(g52)))));
-        const real most1 = larger(larger(magnitude(g10), larger(magnitude(g20), magnitude(g21))),
-            larger(magnitude(g43), larger(magnitude(g53), magnitude(g54))));
-        const real most2 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f2)));
-        const real most3 = larger(magnitude(f3), larger(magnitude(f4), magnitude(f5)));
-        unsure[k] += UNLESS(most0 <= R(2.5)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(1000)) +
-            UNLESS(most3 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22 + d3 + a44 + d5));
+        const real most0 = larger(larger(magnitude(g10)*(sizes[0]/sizes[1]),
+            magnitude(g20)*(sizes[0]/sizes[2])), larger(magnitude(g30)*(sizes[0]/sizes[3]),
+            larger(magnitude(g40)*(sizes[0]/sizes[4]), magnitude(g50)*(sizes[0]/sizes[5]))));
+        const real most1 = larger(larger(magnitude(g21)*(sizes[1]/sizes[2]),
+            magnitude(g31)*(sizes[1]/sizes[3])), larger(magnitude(g41)*(sizes[1]/sizes[4]),
+            magnitude(g51)*(sizes[1]/sizes[5])));
+        const real most2 = larger(magnitude(g32)*(sizes[2]/sizes[3]),
+            larger(magnitude(g42)*(sizes[2]/sizes[4]), magnitude(g52)*(sizes[2]/sizes[5])));
+        const real most3 = larger(magnitude(g43)*(sizes[3]/sizes[4]),
+            magnitude(g53)*(sizes[3]/sizes[5]));
+        const real most4 = magnitude(g54)*(sizes[4]/sizes[5]);
+        unsure[k] += UNLESS(larger(larger(magnitude(f0)*sizes[0], larger(magnitude(f1)*sizes[1],
+            magnitude(f2)*sizes[2])), larger(magnitude(f3)*sizes[3],
+            larger(magnitude(f4)*sizes[4], magnitude(f5)*sizes[5]))) <= R(1000));
+        unsure[k] += UNLESS(larger(larger(most0, most1), larger(most2, larger(most3, most4))) <=
+            R(10));
+        unsure[k] += UNLESS(is_finite(a00 + d1 + a22 + d3 + a44 + d5));
     }
 }
 
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real wrench_in[6], required[6] = {0}, H[36] = {0}, subtract_2[6] = {0}, unsure_4[1] = {0},
-        work[48];
+    static const size_t order_tau[] = {1, 2, 0, 4, 5, 3};
+    static const real sizes_tau[] = {1.0, 1.0, 1.0, 0.25, 0.25, 0.25};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(1, 6, H, subtract_2, tau_out, unsure_4, why.total);
-    if (unsure_4[0] > 0) {
-        set_matrix(6, 1, H, work);
-        solve_apart(6, subtract_2, work, tau_out, why.singular);
-        check(6, 1, tau_out, why.overflow);
+    eliminate_6(1, NV, order_tau, sizes_tau, H, subtract_1, tau_out, unsure_tau, why.total);
+    if (unsure_tau[0] > 0) {
+        set_matrix(NV, 1, H, work);
+        solve_apart(NV, subtract_1, work, tau_out, why.singular);
+        check(NV, 1, tau_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
-        check(6, 1, tau_out, why.overflow);
+        check(NU, 1, tau_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, tau_out);
+        refuse(NU, tau_out);
     }
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
-        H[36*LANES], subtract_2[6*LANES], tau[6*LANES];
+    static const size_t order_tau[] = {1, 2, 0, 4, 5, 3};
+    static const real sizes_tau[] = {1.0, 1.0, 1.0, 0.25, 0.25, 0.25};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
+        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    A = side_by_side(6, A, A_in, why.total);
-    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6*LANES; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(LANES, 6, H, subtract_2, tau, why.singular, why.total);
+    eliminate_6(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
     suspect(&why, code);
-    deliver(6, tau, tau_out);
-}
-
-INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
-{
-    for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(0)*w + k];
-        real a01 = a[(1)*w + k];
-        real a02 = a[(2)*w + k];
-        real a03 = a[(3)*w + k];
-        real a04 = a[(4)*w + k];
-        real a05 = a[(5)*w + k];
-        real b0 = b[0*w + k];
-        real a10 = a[(1*stride + 0)*w + k];
-        real a11 = a[(1*stride + 1)*w + k];
-        real a12 = a[(1*stride + 2)*w + k];
-        real a13 = a[(1*stride + 3)*w + k];
-        real a14 = a[(1*stride + 4)*w + k];
-        real a15 = a[(1*stride + 5)*w + k];
-        real b1 = b[1*w + k];
-        real a20 = a[(2*stride + 0)*w + k];
-        real a21 = a[(2*stride + 1)*w + k];
-        real a22 = a[(2*stride + 2)*w + k];
-        real a23 = a[(2*stride + 3)*w + k];
-        real a24 = a[(2*stride + 4)*w + k];
-        real a25 = a[(2*stride + 5)*w + k];
-        real b2 = b[2*w + k];
-        real a30 = a[(3*stride + 0)*w + k];
-        real a31 = a[(3*stride + 1)*w + k];
-        real a32 = a[(3*stride + 2)*w + k];
-        real a33 = a[(3*stride + 3)*w + k];
-        real a34 = a[(3*stride + 4)*w + k];
-        real a35 = a[(3*stride + 5)*w + k];
-        real b3 = b[3*w + k];
-        real a40 = a[(4*stride + 0)*w + k];
-        real a41 = a[(4*stride + 1)*w + k];
-        real a42 = a[(4*stride + 2)*w + k];
-        real a43 = a[(4*stride + 3)*w + k];
-        real a44 = a[(4*stride + 4)*w + k];
-        real a45 = a[(4*stride + 5)*w + k];
-        real b4 = b[4*w + k];
-        real a50 = a[(5*stride + 0)*w + k];
-        real a51 = a[(5*stride + 1)*w + k];
-        real a52 = a[(5*stride + 2)*w + k];
-        real a53 = a[(5*stride + 3)*w + k];
-        real a54 = a[(5*stride + 4)*w + k];
-        real a55 = a[(5*stride + 5)*w + k];
-        real b5 = b[5*w + k];
-        const real f0 = 1/a00;
-        const real d1 = a00*a11 - a10*a01;
-        const real f1 = a00/d1;
-        const real g10 = a10*f0;
-        a12 -= g10*a02;
-        a13 -= g10*a03;
-        a14 -= g10*a04;
-        a15 -= g10*a05;
-        b1 -= g10*b0;
-        const real g20 = a20*f0;
-        a21 -= g20*a01;
-        a22 -= g20*a02;
-        a23 -= g20*a03;
-        a24 -= g20*a04;
-        a25 -= g20*a05;
-        b2 -= g20*b0;
-        const real g30 = a30*f0;
-        a31 -= g30*a01;
-        a32 -= g30*a02;
-        a33 -= g30*a03;
-        a34 -= g30*a04;
-        a35 -= g30*a05;
-        b3 -= g30*b0;
-        const real g40 = a40*f0;
-        a41 -= g40*a01;
-        a42 -= g40*a02;
-        a43 -= g40*a03;
-        a44 -= g40*a04;
-        a45 -= g40*a05;
-        b4 -= g40*b0;
-        const real g50 = a50*f0;
-        a51 -= g50*a01;
-        a52 -= g50*a02;
-        a53 -= g50*a03;
-        a54 -= g50*a04;
-        a55 -= g50*a05;
-        b5 -= g50*b0;
-        const real g21 = a21*f1;
-        a22 -= g21*a12;
-        a23 -= g21*a13;
-        a24 -= g21*a14;
-        a25 -= g21*a15;
-        b2 -= g21*b1;
-        const real g31 = a31*f1;
-        a32 -= g31*a12;
-        a33 -= g31*a13;
-        a34 -= g31*a14;
-        a35 -= g31*a15;
-        b3 -= g31*b1;
-        const real g41 = a41*f1;
-        a42 -= g41*a12;
-        a43 -= g41*a13;
-        a44 -= g41*a14;
-        a45 -= g41*a15;
-        b4 -= g41*b1;
-        const real g51 = a51*f1;
-        a52 -= g51*a12;
-        a53 -= g51*a13;
-        a54 -= g51*a14;
-        a55 -= g51*a15;
-        b5 -= g51*b1;
-        const real f2 = 1/a22;
-        const real d3 = a22*a33 - a32*a23;
-        const real f3 = a22/d3;
-        const real g32 = a32*f2;
-        a34 -= g32*a24;
-        a35 -= g32*a25;
-        b3 -= g32*b2;
-        const real g42 = a42*f2;
-        a43 -= g42*a23;
-        a44 -= g42*a24;
-        a45 -= g42*a25;
-        b4 -= g42*b2;
-        const real g52 = a52*f2;
-        a53 -= g52*a23;
-        a54 -= g52*a24;
-        a55 -= g52*a25;
-        b5 -= g52*b2;
-        const real g43 = a43*f3;
-        a44 -= g43*a34;
-        a45 -= g43*a35;
-        b4 -= g43*b3;
-        const real g53 = a53*f3;
-        a54 -= g53*a34;
-        a55 -= g53*a35;
-        b5 -= g53*b3;
-        const real f4 = 1/a44;
-        const real d5 = a44*a55 - a54*a45;
-        const real f5 = a44/d5;
-        const real g54 = a54*f4;
-        b5 -= g54*b4;
-        const real x5 = (b5)*f5;
-        const real x4 = (b4)*f4 - a45*f4*x5;
-        const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
-        const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
-        const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
-        const real x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
-        x[0*w + k] = x0;
-        x[1*w + k] = x1;
-        x[2*w + k] = x2;
-        x[3*w + k] = x3;
-        x[4*w + k] = x4;
-        x[5*w + k] = x5;
-        total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
-        const real most0 = larger(larger(magnitude(g30), larger(magnitude(g40), magnitude(g31))),
-            larger(magnitude(g41), larger(magnitude(g32), magnitude(g42))));
-        const real most1 = larger(magnitude(g50), larger(magnitude(g51), magnitude(g52)));
-        const real most2 = larger(larger(magnitude(g10), magnitude(g20)), larger(magnitude(g21),
-            magnitude(g43)));
-        const real most3 = larger(magnitude(g53), magnitude(g54));
-        const real most4 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f2)));
-        const real most5 = magnitude(f5);
-        const real most6 = larger(magnitude(f3), magnitude(f4));
-        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(2.5)) + UNLESS(most2 <= R(10))
-            + UNLESS(most3 <= R(40)) + UNLESS(most4 <= R(62.5)) + UNLESS(most5 <= R(250)) +
-            UNLESS(most6 <= R(1000)) + UNLESS(is_finite(a00 + d1 + a22 + d3 + a44 + d5));
-    }
+    deliver(NU, tau, tau_out);
 }
 
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, int *code)
 {
-    real wrench_in[6], M[36] = {0}, Z[6] = {0}, H[36] = {0}, times_1[6] = {0}, add_3[6] = {0},
-        subtract_4[6] = {0}, unsure_7[1] = {0}, work[48];
+    static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
+    static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 4.0};
+    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
+        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(tau, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
-    product(6, 6, 1, 1, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 6; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, 1, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 6; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    eliminate_1(1, 6, M, subtract_4, A_out, unsure_7, why.total);
-    if (unsure_7[0] > 0) {
-        set_matrix(6, 1, M, work);
-        solve_apart(6, subtract_4, work, A_out, why.singular);
-        check(6, 1, A_out, why.overflow);
+    eliminate_6(1, NV, order_A, sizes_A, M, subtract_1, A_out, unsure_A, why.total);
+    if (unsure_A[0] > 0) {
+        set_matrix(NV, 1, M, work);
+        solve_apart(NV, subtract_1, work, A_out, why.singular);
+        check(NV, 1, A_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
-        check(6, 1, A_out, why.overflow);
+        check(NV, 1, A_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, A_out);
+        refuse(NV, A_out);
     }
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
-        H[36*LANES], times_1[6*LANES] = {0}, add_3[6*LANES], subtract_4[6*LANES], A[6*LANES];
+    static const size_t order_A[] = {0, 1, 2, 3, 4, 5};
+    static const real sizes_A[] = {16.0, 16.0, 16.0, 1.0, 1.0, 4.0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
+        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
+        A[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    tau = side_by_side(6, tau, tau_in, why.total);
-    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    product(6, 6, 1, LANES, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 6*LANES; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 6*LANES; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    eliminate_1(LANES, 6, M, subtract_4, A, why.singular, why.total);
+    eliminate_6(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
     suspect(&why, code);
-    deliver(6, A, A_out);
+    deliver(NV, A, A_out);
 }
 
 INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(6, 1, A, why.invalid);
+    check(NV, 1, A, why.invalid);
     const real *const completed = A;
-    check(6, 1, completed, why.overflow);
+    check(NV, 1, completed, why.overflow);
     judge(&why, code);
-    copy(6, completed, completed_out);
+    copy(NV, completed, completed_out);
     if (*code != OK) {
-        refuse(6, completed_out);
+        refuse(NV, completed_out);
     }
 }
 
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t places_0[] = {0, 0, 1, 1, 2, 2};
-    real wrench_in[6], required[6] = {0}, H[36] = {0}, subtract_2[6] = {0}, solve_3[6] = {0},
-        unsure_5[1] = {0}, leg_force[9] = {0}, drive[18] = {0}, forces[9] = {0}, work[48];
+    static const size_t order_solve_1[] = {1, 2, 0, 4, 5, 3};
+    static const real sizes_solve_1[] = {1.0, 1.0, 1.0, 0.25, 0.25, 0.25};
+    static const size_t places_forces[] = {0, 0, 1, 1, 2, 2};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[NL*NL] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(1, 6, H, subtract_2, solve_3, unsure_5, why.total);
-    if (unsure_5[0] > 0) {
-        set_matrix(6, 1, H, work);
-        solve_apart(6, subtract_2, work, solve_3, why.singular);
-        check(6, 1, solve_3, why.overflow);
+    eliminate_6(1, NV, order_solve_1, sizes_solve_1, H, subtract_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NV, 1, H, work);
+        solve_apart(NV, subtract_1, work, solve_1, why.singular);
+        check(NV, 1, solve_1, why.overflow);
     }
-    legs_run(m, X, V, A, leg_force, drive, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    legs_run(m, X, V, A, leg_force, actuator, &why);
+    for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
-    add_forces(6, 3, 1, places_0, solve_3, drive, forces);
-    check(9, 1, forces, why.overflow);
+    add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
+    check(NL*NL, 1, forces, why.overflow);
     judge(&why, code);
-    copy(9, forces, forces_out);
+    copy(NL*NL, forces, forces_out);
     if (*code != OK) {
-        refuse(9, forces_out);
+        refuse(NL*NL, forces_out);
     }
 }
 
 INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
-    real M[36] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
-    half_form(6, 1, V, M, kinetic);
+    half_form(NV, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
@@ -5327,12 +5239,12 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
 INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
-    static const size_t places_0[] = {3, 4, 5};
-    real length_in[1], H[36] = {0}, lengths[2] = {0}, legs[3] = {0}, reach[3] = {0},
-        choose_length_1[1] = {0}, divide_rows_2[36] = {0}, sigma[6] = {0};
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -5340,46 +5252,45 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 36; ++i) {
-        divide_rows_2[i] = H[i];
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
     }
-    divide_rows(3, 6, 1, places_0, choose_length_1, divide_rows_2);
-    singular_values(6, 6, divide_rows_2, sigma);
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(3, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(6, 1, sigma, why.overflow);
+    check(NV, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(6, sigma, sigma_out);
-    copy(3, legs, legs_out);
+    copy(NV, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(6, sigma_out);
-        refuse(3, legs_out);
+        refuse(NV, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 2, 3, 5, 6, 8};
-    real q[9] = {0}, take_1[6] = {0}, gap[6] = {0};
+    real q[NJ] = {0}, take_1[6] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(q_actuated, 6);
+    const real total_in = total(X, NQ) + total(q_actuated, NU);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, q_actuated, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(6, 1, places_0, q, take_1);
-    for (size_t i = 0; i < 6; ++i) {
+    take(6, 1, hybrid_3prps_ACTUATED, q, take_1);
+    for (size_t i = 0; i < NU; ++i) {
         gap[i] = q_actuated[i] - take_1[i];
     }
-    check(6, 1, gap, why.overflow);
+    check(NU, 1, gap, why.overflow);
     judge(&why, code);
-    copy(6, gap, gap_out);
+    copy(NU, gap, gap_out);
     if (*code != OK) {
-        refuse(6, gap_out);
+        refuse(NU, gap_out);
     }
 }
 
@@ -5387,23 +5298,23 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
-        check(36, 1, slope_out, why.overflow);
+        check(NV*NU, 1, slope_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(36, slope_out);
+        refuse(NV*NU, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
-    enum { N = 6, NV = 6, TRIALS = 12 };
+    enum { N = NU, TRIALS = 12 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[7] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     mismatch_one(m, found, q_actuated, gap, &code);
@@ -5446,30 +5357,30 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
-    real X[7] = {0};
+    real X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(q_actuated, 6) + total(X0, 7);
+    const real total_in = total(q_actuated, NU) + total(X0, NQ);
     if (!is_finite(total_in)) {
-        check(6, 1, q_actuated, why.invalid);
-        check(7, 1, X0, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
+        check(NQ, 1, X0, why.invalid);
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(7, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
-    real subtract_1[6] = {0};
+    real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
-    check(6, 1, V, why.invalid);
-    for (size_t i = 0; i < 6; ++i) {
+    check(NV, 1, V, why.invalid);
+    for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
@@ -5484,85 +5395,85 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
     *code)
 {
-    real M[36] = {0}, momentum[6] = {0};
+    real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
-    product(6, 6, 1, 1, M, V, momentum);
-    check(6, 1, momentum, why.overflow);
+    product(NV, NV, 1, 1, M, V, momentum);
+    check(NV, 1, momentum, why.overflow);
     judge(&why, code);
-    copy(6, momentum, momentum_out);
+    copy(NV, momentum, momentum_out);
     if (*code != OK) {
-        refuse(6, momentum_out);
+        refuse(NV, momentum_out);
     }
 }
 
 INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
     int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], M[36*LANES], momentum[6*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     M_run_lanes(m, X, M, &why);
-    product(6, 6, 1, LANES, M, V, momentum);
-    add_up(6, momentum, why.total);
+    product(NV, NV, 1, LANES, M, V, momentum);
+    add_up(NV, momentum, why.total);
     suspect(&why, code);
-    deliver(6, momentum, momentum_out);
+    deliver(NV, momentum, momentum_out);
 }
 
 INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real q[9] = {0}, margins[9] = {0};
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    real q[NJ] = {0}, margins[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
-    unlimited(9, 9, 1, places_0, margins, why.overflow);
+    unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     judge(&why, code);
-    copy(9, margins, margins_out);
+    copy(NJ, margins, margins_out);
     if (*code != OK) {
-        refuse(9, margins_out);
+        refuse(NJ, margins_out);
     }
 }
 
 INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real X_in[7*LANES], q[9*LANES], margins[9*LANES];
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 9*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         margins[i] = q[i];
     }
-    unlimited(9, 9, LANES, places_0, margins, why.invalid);
+    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
     suspect(&why, code);
-    deliver(9, margins, margins_out);
+    deliver(NJ, margins, margins_out);
 }
 
 INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real q[9] = {0}, subtract_1[9] = {0}, within[1] = {0};
+    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(9, 1, subtract_1, within, why.overflow);
+    not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     judge(&why, code);
     copy(1, within, within_out);
@@ -5573,15 +5484,15 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
 
 INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real X_in[7*LANES], q[9*LANES], subtract_1[9*LANES], within[1*LANES] = {0};
+    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 9*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(9, LANES, subtract_1, within, why.invalid);
+    not_negative(NJ, LANES, subtract_1, within, why.invalid);
     add_up(1, within, why.total);
     suspect(&why, code);
     deliver(1, within, within_out);
@@ -5589,129 +5500,123 @@ INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_o
 
 INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 3, 5, 6, 8};
-    real q_of_inverse_kinematics[9] = {0}, q[6] = {0};
+    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
-    take(6, 1, places_0, q_of_inverse_kinematics, q);
-    check(6, 1, q, why.overflow);
+    take(NU, 1, hybrid_3prps_ACTUATED, q_of_inverse_kinematics, q);
+    check(NU, 1, q, why.overflow);
     judge(&why, code);
-    copy(6, q, q_out);
+    copy(NU, q, q_out);
     if (*code != OK) {
-        refuse(6, q_out);
+        refuse(NU, q_out);
     }
 }
 
 INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 3, 5, 6, 8};
-    real X_in[7*LANES], q_of_inverse_kinematics[9*LANES], q[6*LANES] = {0};
+    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(6, 1*LANES, places_0, q_of_inverse_kinematics, q);
-    add_up(6, q, why.total);
+    take(NU, LANES, hybrid_3prps_ACTUATED, q_of_inverse_kinematics, q);
+    add_up(NU, q, why.total);
     suspect(&why, code);
-    deliver(6, q, q_out);
+    deliver(NU, q, q_out);
 }
 
 INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    static const size_t places_0[] = {0, 2, 3, 5, 6, 8};
-    real qd_of_joint_rates[9] = {0}, qd[6] = {0};
+    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
-    take(6, 1, places_0, qd_of_joint_rates, qd);
-    check(6, 1, qd, why.overflow);
+    take(NU, 1, hybrid_3prps_ACTUATED, qd_of_joint_rates, qd);
+    check(NU, 1, qd, why.overflow);
     judge(&why, code);
-    copy(6, qd, qd_out);
+    copy(NU, qd, qd_out);
     if (*code != OK) {
-        refuse(6, qd_out);
+        refuse(NU, qd_out);
     }
 }
 
 INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 2, 3, 5, 6, 8};
-    real X_in[7*LANES], V_in[6*LANES], qd_of_joint_rates[9*LANES], qd[6*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(6, 1*LANES, places_0, qd_of_joint_rates, qd);
-    add_up(6, qd, why.total);
+    take(NU, LANES, hybrid_3prps_ACTUATED, qd_of_joint_rates, qd);
+    add_up(NU, qd, why.total);
     suspect(&why, code);
-    deliver(6, qd, qd_out);
+    deliver(NU, qd, qd_out);
 }
 
 INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 3, 5, 6, 8};
-    real qdd_of_joint_accelerations[9] = {0}, qdd[6] = {0};
+    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(6, 1, places_0, qdd_of_joint_accelerations, qdd);
-    check(6, 1, qdd, why.overflow);
+    take(NU, 1, hybrid_3prps_ACTUATED, qdd_of_joint_accelerations, qdd);
+    check(NU, 1, qdd, why.overflow);
     judge(&why, code);
-    copy(6, qdd, qdd_out);
+    copy(NU, qdd, qdd_out);
     if (*code != OK) {
-        refuse(6, qdd_out);
+        refuse(NU, qdd_out);
     }
 }
 
 INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 3, 5, 6, 8};
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of_joint_accelerations[9*LANES],
-        qdd[6*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
+        qdd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    A = side_by_side(6, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(6, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
-    add_up(6, qdd, why.total);
+    take(NU, LANES, hybrid_3prps_ACTUATED, qdd_of_joint_accelerations, qdd);
+    add_up(NU, qdd, why.total);
     suspect(&why, code);
-    deliver(6, qdd, qdd_out);
+    deliver(NU, qdd, qdd_out);
 }
 
 INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real H[36] = {0}, times_1[6] = {0}, power[1] = {0};
+    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(tau, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
     H_run(m, X, H, &why);
-    product(6, 6, 1, 1, H, tau, times_1);
-    inner(6, 1, times_1, V, power);
+    product(NV, NU, 1, 1, H, tau, times_1);
+    inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     judge(&why, code);
     copy(1, power, power_out);
@@ -5723,16 +5628,16 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
 INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], H[36*LANES], times_1[6*LANES] = {0},
-        power[1*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        power[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    tau = side_by_side(6, tau, tau_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
     H_run_lanes(m, X, H, &why);
-    product(6, 6, 1, LANES, H, tau, times_1);
-    inner(6, LANES, times_1, V, power);
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    inner(NV, LANES, times_1, V, power);
     add_up(1, power, why.total);
     suspect(&why, code);
     deliver(1, power, power_out);
@@ -5743,7 +5648,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     real R[9] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     const real *const take_1 = X + 3;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
@@ -5756,7 +5661,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
 
 INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 3) + total(R, 9);
@@ -5765,42 +5670,42 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
         check(9, 1, R, why.invalid);
     }
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
-    const real *const X = join_2;
-    check(7, 1, X, why.overflow);
+    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
+    const real *const X = join_1;
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
-    real quaternion_rate_3[4] = {0}, X_dot[7] = {0};
+    real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     const real *const take_1 = V + 3;
     const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_3);
-    const real *const take_4 = V;
-    beside(1, 3, 4, take_4, quaternion_rate_3, X_dot);
-    check(7, 1, X_dot, why.overflow);
+    quaternion_rate(take_2, take_1, quaternion_rate_1);
+    const real *const take_3 = V;
+    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
-    copy(7, X_dot, X_dot_out);
+    copy(NQ, X_dot, X_dot_out);
     if (*code != OK) {
-        refuse(7, X_dot_out);
+        refuse(NQ, X_dot_out);
     }
 }
 
 INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 3) + total(rpy, 3);
@@ -5809,108 +5714,108 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
         check(3, 1, rpy, why.invalid);
     }
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
-    const real *const X = join_2;
-    check(7, 1, X, why.overflow);
+    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
+    const real *const X = join_1;
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
-    real turn_quaternion_5[4] = {0}, add_6[3] = {0}, X_moved[7] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(step, 6);
+    const real total_in = total(X, NQ) + total(step, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, step, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, step, why.invalid);
     }
     const real *const take_1 = X;
     const real *const take_2 = X + 3;
     const real *const take_3 = step;
     const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_5);
+    turn_quaternion(take_2, take_4, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_6[i] = take_1[i] + take_3[i];
+        add_1[i] = take_1[i] + take_3[i];
     }
-    beside(1, 3, 4, add_6, turn_quaternion_5, X_moved);
-    check(7, 1, X_moved, why.overflow);
+    beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
+    check(NQ, 1, X_moved, why.overflow);
     judge(&why, code);
-    copy(7, X_moved, X_moved_out);
+    copy(NQ, X_moved, X_moved_out);
     if (*code != OK) {
-        refuse(7, X_moved_out);
+        refuse(NQ, X_moved_out);
     }
 }
 
 INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
-    real turn_between_5[3] = {0}, subtract_6[3] = {0}, step[6] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 7) + total(X1, 7);
+    const real total_in = total(X0, NQ) + total(X1, NQ);
     if (!is_finite(total_in)) {
-        check(7, 1, X0, why.invalid);
-        check(7, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
     }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
     const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_5);
+    turn_between(take_2, take_4, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_6[i] = take_3[i] - take_1[i];
+        subtract_1[i] = take_3[i] - take_1[i];
     }
-    beside(1, 3, 3, subtract_6, turn_between_5, step);
-    check(6, 1, step, why.overflow);
+    beside(1, 3, 3, subtract_1, turn_between_1, step);
+    check(NV, 1, step, why.overflow);
     judge(&why, code);
-    copy(6, step, step_out);
+    copy(NV, step, step_out);
     if (*code != OK) {
-        refuse(6, step_out);
+        refuse(NV, step_out);
     }
 }
 
 INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    real turn_between_5[3] = {0}, subtract_6[3] = {0}, join_7[6] = {0}, scale_8[6] = {0},
-        turn_quaternion_13[4] = {0}, add_14[3] = {0}, X[7] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
+        turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 7) + total(X1, 7) + total(s, 1);
+    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
     if (!is_finite(total_in)) {
-        check(7, 1, X0, why.invalid);
-        check(7, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
     const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_5);
+    turn_between(take_2, take_4, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_6[i] = take_3[i] - take_1[i];
+        subtract_1[i] = take_3[i] - take_1[i];
     }
-    beside(1, 3, 3, subtract_6, turn_between_5, join_7);
+    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
-        scale_8[i] = join_7[i]*s[i%(1)];
+        scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_9 = X0;
-    const real *const take_10 = X0 + 3;
-    const real *const take_11 = scale_8;
-    const real *const take_12 = scale_8 + 3;
-    turn_quaternion(take_10, take_12, turn_quaternion_13);
+    const real *const take_5 = X0;
+    const real *const take_6 = X0 + 3;
+    const real *const take_7 = scale_1;
+    const real *const take_8 = scale_1 + 3;
+    turn_quaternion(take_6, take_8, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_14[i] = take_9[i] + take_11[i];
+        add_1[i] = take_5[i] + take_7[i];
     }
-    beside(1, 3, 4, add_14, turn_quaternion_13, X);
-    check(7, 1, X, why.overflow);
+    beside(1, 3, 4, add_1, turn_quaternion_1, X);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -5930,16 +5835,16 @@ size_t hybrid_3prps_M_batch(const hybrid_3prps_model *model, size_t n, const hyb
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_lanes(model, X + 7*i, M + 36*i, codes);
+        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_M(model, X + 7*(i + k), M + 36*(i + k));
+                codes[k] = hybrid_3prps_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_M(model, X + 7*i, M + 36*i);
+        const int code = hybrid_3prps_M(model, X + NQ*i, M + NV*NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5959,16 +5864,16 @@ size_t hybrid_3prps_Z_batch(const hybrid_3prps_model *model, size_t n, const hyb
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_lanes(model, X + 7*i, V + 6*i, Z + 6*i, codes);
+        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
+                codes[k] = hybrid_3prps_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_Z(model, X + 7*i, V + 6*i, Z + 6*i);
+        const int code = hybrid_3prps_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5988,16 +5893,16 @@ size_t hybrid_3prps_H_batch(const hybrid_3prps_model *model, size_t n, const hyb
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_lanes(model, X + 7*i, H + 36*i, codes);
+        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_H(model, X + 7*(i + k), H + 36*(i + k));
+                codes[k] = hybrid_3prps_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_H(model, X + 7*i, H + 36*i);
+        const int code = hybrid_3prps_H(model, X + NQ*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6017,16 +5922,16 @@ size_t hybrid_3prps_inverse_kinematics_batch(const hybrid_3prps_model *model, si
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_lanes(model, X + 7*i, q + 9*i, codes);
+        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_inverse_kinematics(model, X + 7*(i + k), q + 9*(i + k));
+                codes[k] = hybrid_3prps_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_inverse_kinematics(model, X + 7*i, q + 9*i);
+        const int code = hybrid_3prps_inverse_kinematics(model, X + NQ*i, q + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6046,16 +5951,16 @@ size_t hybrid_3prps_joint_rates_batch(const hybrid_3prps_model *model, size_t n,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_lanes(model, X + 7*i, V + 6*i, rates + 9*i, codes);
+        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 9*(i + k));
+                codes[k] = hybrid_3prps_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_joint_rates(model, X + 7*i, V + 6*i, rates + 9*i);
+        const int code = hybrid_3prps_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6076,18 +5981,18 @@ size_t hybrid_3prps_joint_accelerations_batch(const hybrid_3prps_model *model, s
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 9*i, codes);
+        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
-                    accelerations + 9*(i + k));
+                codes[k] = hybrid_3prps_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    accelerations + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_joint_accelerations(model, X + 7*i, V + 6*i, A + 6*i, accelerations
-            + 9*i);
+        const int code = hybrid_3prps_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6108,17 +6013,18 @@ size_t hybrid_3prps_dynamics_batch(const hybrid_3prps_model *model, size_t n, co
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_lanes(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 36*i, codes);
+        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i +
-                    k), H + 36*(i + k));
+                codes[k] = hybrid_3prps_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
+                    NV*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_dynamics(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 36*i);
+        const int code = hybrid_3prps_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
+            NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6140,19 +6046,19 @@ size_t hybrid_3prps_inverse_dynamics_batch(const hybrid_3prps_model *model, size
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_lanes(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau + 6*i,
-            codes);
+        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+            NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
-                    wrench ? wrench + 6*(i + k) : NULL, tau + 6*(i + k));
+                codes[k] = hybrid_3prps_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_inverse_dynamics(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench +
-            6*i : NULL, tau + 6*i);
+        const int code = hybrid_3prps_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
+            wrench + NW*i : NULL, tau + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6174,19 +6080,19 @@ size_t hybrid_3prps_forward_dynamics_batch(const hybrid_3prps_model *model, size
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_lanes(model, X + 7*i, V + 6*i, tau + 6*i, wrench ? wrench + 6*i : NULL, A + 6*i,
-            codes);
+        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+            NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 6*(i + k),
-                    wrench ? wrench + 6*(i + k) : NULL, A + 6*(i + k));
+                codes[k] = hybrid_3prps_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
+                    wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_forward_dynamics(model, X + 7*i, V + 6*i, tau + 6*i, wrench ? wrench
-            + 6*i : NULL, A + 6*i);
+        const int code = hybrid_3prps_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
+            wrench + NW*i : NULL, A + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6211,8 +6117,8 @@ size_t hybrid_3prps_complete_acceleration_batch(const hybrid_3prps_model *model,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, wrench ?
-            wrench + 6*i : NULL, completed + 6*i);
+        const int code = hybrid_3prps_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
+            wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6233,8 +6139,8 @@ size_t hybrid_3prps_leg_reactions_batch(const hybrid_3prps_model *model, size_t 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_leg_reactions(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench +
-            6*i : NULL, forces + 9*i);
+        const int code = hybrid_3prps_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
+            NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6254,7 +6160,7 @@ size_t hybrid_3prps_energy_batch(const hybrid_3prps_model *model, size_t n, cons
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_energy(model, X + 7*i, V + 6*i, kinetic + 1*i, potential + 1*i);
+        const int code = hybrid_3prps_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6273,7 +6179,7 @@ size_t hybrid_3prps_condition_batch(const hybrid_3prps_model *model, size_t n, c
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_condition(model, X + 7*i, sigma + 6*i, legs + 3*i);
+        const int code = hybrid_3prps_condition(model, X + NQ*i, sigma + 6*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6292,7 +6198,7 @@ size_t hybrid_3prps_forward_kinematics_batch(const hybrid_3prps_model *model, si
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_forward_kinematics(model, q_actuated + 6*i, X0 + 7*i, X + 7*i);
+        const int code = hybrid_3prps_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6313,7 +6219,7 @@ size_t hybrid_3prps_dissipation_batch(const hybrid_3prps_model *model, size_t n,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_dissipation(model, X + 7*i, V + 6*i, dissipation + 1*i);
+        const int code = hybrid_3prps_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6333,16 +6239,16 @@ size_t hybrid_3prps_momentum_batch(const hybrid_3prps_model *model, size_t n, co
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_lanes(model, X + 7*i, V + 6*i, momentum + 6*i, codes);
+        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_momentum(model, X + 7*(i + k), V + 6*(i + k), momentum + 6*(i + k));
+                codes[k] = hybrid_3prps_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_momentum(model, X + 7*i, V + 6*i, momentum + 6*i);
+        const int code = hybrid_3prps_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6362,16 +6268,16 @@ size_t hybrid_3prps_joint_margins_batch(const hybrid_3prps_model *model, size_t 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_margins_lanes(model, X + 7*i, margins + 9*i, codes);
+        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_joint_margins(model, X + 7*(i + k), margins + 9*(i + k));
+                codes[k] = hybrid_3prps_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_joint_margins(model, X + 7*i, margins + 9*i);
+        const int code = hybrid_3prps_joint_margins(model, X + NQ*i, margins + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6391,16 +6297,16 @@ size_t hybrid_3prps_within_limits_batch(const hybrid_3prps_model *model, size_t 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        within_limits_lanes(model, X + 7*i, within + 1*i, codes);
+        within_limits_lanes(model, X + NQ*i, within + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_within_limits(model, X + 7*(i + k), within + 1*(i + k));
+                codes[k] = hybrid_3prps_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_within_limits(model, X + 7*i, within + 1*i);
+        const int code = hybrid_3prps_within_limits(model, X + NQ*i, within + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6420,16 +6326,16 @@ size_t hybrid_3prps_actuator_positions_batch(const hybrid_3prps_model *model, si
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_lanes(model, X + 7*i, q + 6*i, codes);
+        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_actuator_positions(model, X + 7*(i + k), q + 6*(i + k));
+                codes[k] = hybrid_3prps_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_actuator_positions(model, X + 7*i, q + 6*i);
+        const int code = hybrid_3prps_actuator_positions(model, X + NQ*i, q + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6449,16 +6355,16 @@ size_t hybrid_3prps_actuator_rates_batch(const hybrid_3prps_model *model, size_t
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_lanes(model, X + 7*i, V + 6*i, rates + 6*i, codes);
+        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_actuator_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 6*(i + k));
+                codes[k] = hybrid_3prps_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_actuator_rates(model, X + 7*i, V + 6*i, rates + 6*i);
+        const int code = hybrid_3prps_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6479,18 +6385,18 @@ size_t hybrid_3prps_actuator_accelerations_batch(const hybrid_3prps_model *model
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 6*i, codes);
+        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_actuator_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
-                    accelerations + 6*(i + k));
+                codes[k] = hybrid_3prps_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
+                    k), accelerations + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_actuator_accelerations(model, X + 7*i, V + 6*i, A + 6*i,
-            accelerations + 6*i);
+        const int code = hybrid_3prps_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6511,17 +6417,17 @@ size_t hybrid_3prps_power_batch(const hybrid_3prps_model *model, size_t n, const
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_lanes(model, X + 7*i, V + 6*i, tau + 6*i, power + 1*i, codes);
+        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3prps_power(model, X + 7*(i + k), V + 6*(i + k), tau + 6*(i + k), power + 1*(i +
-                    k));
+                codes[k] = hybrid_3prps_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i
+                    + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_power(model, X + 7*i, V + 6*i, tau + 6*i, power + 1*i);
+        const int code = hybrid_3prps_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6539,7 +6445,7 @@ size_t hybrid_3prps_rotation_batch(size_t n, const hybrid_3prps_real *X, hybrid_
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_rotation(X + 7*i, R + 9*i);
+        const int code = hybrid_3prps_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6558,7 +6464,7 @@ size_t hybrid_3prps_pose_batch(size_t n, const hybrid_3prps_real *t, const hybri
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_pose(t + 3*i, R + 9*i, X + 7*i);
+        const int code = hybrid_3prps_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6577,7 +6483,7 @@ size_t hybrid_3prps_X_dot_batch(size_t n, const hybrid_3prps_real *X, const hybr
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_X_dot(X + 7*i, V + 6*i, X_dot + 7*i);
+        const int code = hybrid_3prps_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6596,7 +6502,7 @@ size_t hybrid_3prps_pose_from_rpy_batch(size_t n, const hybrid_3prps_real *t, co
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_pose_from_rpy(t + 3*i, rpy + 3*i, X + 7*i);
+        const int code = hybrid_3prps_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6615,7 +6521,7 @@ size_t hybrid_3prps_retract_batch(size_t n, const hybrid_3prps_real *X, const hy
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_retract(X + 7*i, step + 6*i, X_moved + 7*i);
+        const int code = hybrid_3prps_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6634,7 +6540,7 @@ size_t hybrid_3prps_difference_batch(size_t n, const hybrid_3prps_real *X0, cons
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_difference(X0 + 7*i, X1 + 7*i, step + 6*i);
+        const int code = hybrid_3prps_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6653,7 +6559,7 @@ size_t hybrid_3prps_interpolate_batch(size_t n, const hybrid_3prps_real *X0, con
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3prps_interpolate(X0 + 7*i, X1 + 7*i, s + 1*i, X + 7*i);
+        const int code = hybrid_3prps_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

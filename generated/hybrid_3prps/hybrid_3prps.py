@@ -91,7 +91,7 @@ _SHAPES = {  # of the arrays that functions give
     "qd": (9,),
     "qdd": (9,),
     "leg_force": (3, 3),
-    "drive": (6, 3),
+    "actuator": (6, 3),
     "potential": (1,),
     "lengths": (2,),
     "pivots": (3,),
@@ -132,7 +132,7 @@ _leg_force_prps = (
     [1, 4, 7],
     [2, 5, 8],
 )
-_drive_prps = (
+_actuator_prps = (
     [0, 6, 12],
     [1, 7, 13],
     [2, 8, 14],
@@ -834,50 +834,41 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
+_BLOCK = 4096  # states
 _SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
-    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    """Prepared values of a function, and for each loop over legs (leg, its values): floats."""
     if name not in p._cache:
         shared, loops = p._prepared()[name]
-        rows, columns = [], []
+        rows = []
         for count, values in loops:
-            table = [np.broadcast_to(v, count) for v in values]
-            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
-            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
-        p._cache[name] = tuple(map(float, shared)), rows, columns
+            table = [np.broadcast_to(v, count).tolist() for v in values]
+            rows.append([(leg, tuple(v[leg] for v in table)) for leg in range(count)])
+        p._cache[name] = tuple(map(float, shared)), rows
     return p._cache[name]
-
-
-def _sqrt(x):
-    return x**0.5 if x >= 0.0 else np.nan
 
 
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
-    sqrt = staticmethod(_sqrt)
+    sqrt = staticmethod(math.sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda leg, good: good)
 
-    def __init__(self, p, states):
+    def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)[:2]
+        return _constants(self.p, name)
 
     def zeros(self, name):
         return [0.0] * math.prod(_SHAPES[name])
-
-    def added(self, sums, leg, terms):
-        """Sums over the legs so far."""
-        return [a + b for a, b in zip(sums, terms)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -889,7 +880,7 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, ValueError):
             ok = False
         if ok and all(all(map(math.isfinite, array)) for array in arrays):
             return arrays
@@ -897,54 +888,66 @@ class _Floats:
 
 
 class _Arrays:
-    """Functions of many states at once: arrays (states,), and (legs, states)."""
+    """Functions of many states at once, in arrays (states,).
+
+    Attributes:
+        kept: replays, by their place among those of a block, for other blocks of the same size;
+            None where there are too few states for it to pay to record.
+    """
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
-    def __init__(self, p, states):
-        self.p, self.states = p, states
+    def __init__(self, p, states, kept=None):
+        self.p, self.states, self.kept, self.done = p, states, kept, 0
 
     def constants(self, name):
-        """Shared values, and (all legs, their values) once for each loop."""
-        shared, _, columns = _constants(self.p, name)
-        return shared, columns
+        """Shared values, and (leg, its values) for every leg of each loop.
+
+        As arrays without dimensions: beside arrays they are faster than floats.
+        """
+        if (name, "arrays") not in self.p._cache:
+            shared, loops = _constants(self.p, name)
+            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
+            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
+        return self.p._cache[name, "arrays"]
 
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, legs, good):
-        """Whether it holds for all legs."""
-        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
-
-    def added(self, sums, legs, terms):
-        """Sums over the legs, all at once."""
-        shape = (legs.stop, self.states)
-        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+    def computed(self, function, names, vectors):
+        """Flags and arrays (*shape, states) of a function."""
+        if self.kept is None:
+            flags, arrays = function(self, *vectors)
+        else:
+            if self.done not in self.kept:
+                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+            flags, arrays = self.kept[self.done].run(vectors)
+            self.done += 1
+        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = function(self, *vectors)
-        for a in arrays:
-            ok = ok & np.isfinite(a).all(axis=0)
+        ok, arrays = self.computed(function, names, vectors)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
-                a[:, ~ok] = np.nan
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+                a[..., ~ok] = np.nan
+        return arrays
 
 
 class _Judged(_Arrays):
     """The same, and why a state is impossible."""
 
-    def __init__(self, p, states):
-        super().__init__(p, states)
+    def __init__(self, p, states, kept=None):
+        super().__init__(p, states, kept)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = function(self, *vectors)
+        (valid, reached, clear), arrays = self.computed(function, names, vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            self.failed[code] |= np.logical_not(good)
+        return arrays
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -956,9 +959,9 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _mode(p, states):
+def _mode(p, states, kept=None):
     """The faster way for so many states."""
-    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
@@ -991,26 +994,27 @@ def _one(steps, p, given, shapes, read, unbounded):
 
 
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
-    """Results at many states, block by block."""
+    """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
+    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
-    if count > _BLOCK:
+    if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
         # of intermediate arrays from block to block instead of giving its pages back.
         np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
-        for first in range(0, max(count, 1), _BLOCK):
-            block = slice(first, min(first + _BLOCK, count))
+        for stop in (*range(size, count, max(size, 1)), count):
+            block = slice(stop - size, stop)
             states = [_states_last(v[block]) for v in flat]
-            m, good = mode(p, block.stop - first), possible[block]
+            m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
-            _all_finite(compress(states, read), good)
+            good &= _finite(compress(states, read), size)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
+            good &= _finite([np.minimum(a, 0.0) for a in found] if unbounded else found, size)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1027,10 +1031,194 @@ def _states_last(a):
     return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
 
 
-def _all_finite(arrays, good):
-    """Clear the flags of states in which some entry is not finite."""
-    for a in arrays:
-        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+def _finite(arrays, states):
+    """In which states all entries of arrays (*shape, states) are finite."""
+    flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
+    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    if not np.all(good):  # or the sum is too large
+        good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
+    return good
+
+
+def _least(x, y, out):
+    return np.minimum(x, y, out=out)
+
+
+def _both(operation):
+    """An operation of recorded values, and the same with its operands the other way round."""
+    return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
+
+
+class _Recorded:
+    """A value of a function that runs to be recorded."""
+
+    def __init__(self, record, number):
+        self.record, self.number = record, number
+
+    __add__, __radd__ = _both(np.add)
+    __sub__, __rsub__ = _both(np.subtract)
+    __mul__, __rmul__ = _both(np.multiply)
+    __truediv__, __rtruediv__ = _both(np.divide)
+    __and__, __rand__ = _both(np.logical_and)
+    __gt__, __lt__ = _both(np.greater)
+    __ge__, __le__ = _both(np.greater_equal)
+
+    def __neg__(self):
+        return self.record.made(np.negative, self)
+
+    def __abs__(self):
+        return self.record.made(np.absolute, self)
+
+
+class _Record:
+    """The operations of a function, recorded by running it, and where their results stand.
+
+    Results share arrays: what is read for the last time makes room for the next, so that a few
+    arrays do, which stay in the processor's cache.
+
+    Attributes:
+        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
+        steps: (operation, numbers of its operands and of its result).
+        slots: number of a result -> (kind of array or "out", place).
+        counts: how many arrays there are of every kind.
+    """
+
+    def __init__(self, p, function, sizes):
+        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
+        self.constant, self.literals = [], {}
+        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
+        flags, arrays = function(self, *self.inputs)
+        self.is_judged = isinstance(flags, tuple)
+        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes = [len(array) for array in arrays]
+        for place, value in enumerate(v for array in arrays for v in array):
+            self.store(self.number(value), place)
+        self.counts = self.share()
+
+    # ---- the mode in which the function runs ----
+
+    def sqrt(self, x):
+        return self.made(np.sqrt, x)
+
+    def sin(self, x):
+        return self.made(np.sin, x)
+
+    def cos(self, x):
+        return self.made(np.cos, x)
+
+    def atan2(self, y, x):
+        return self.made(np.arctan2, y, x)
+
+    def least(self, x, y):
+        return self.made(_least, x, y)
+
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        self.name, (shared, loops) = name, _constants(self.p, name)
+        shared = self.named(shared)
+        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+
+    # ---- what is recorded ----
+
+    def named(self, values):
+        """Values for constants."""
+        found = [self.value("one") for _ in values]
+        self.constant += [v.number for v in found]
+        return found
+
+    def value(self, kind):
+        self.kinds.append(kind)
+        return _Recorded(self, len(self.kinds) - 1)
+
+    def number(self, value):
+        """Number of a value, which may be a literal."""
+        if isinstance(value, _Recorded):
+            return value.number
+        if value not in self.literals:
+            self.literals[value] = self.value("one").number
+        return self.literals[value]
+
+    def made(self, operation, *operands):
+        """The result of an operation."""
+        numbers = [self.number(operand) for operand in operands]
+        if all(self.kinds[n] == "one" for n in numbers):
+            kind = "one"
+        else:
+            kind = "flag" if operation in _OF_FLAGS else "state"
+        result = self.value(kind)
+        self.steps.append((operation, [*numbers, result.number]))
+        return result
+
+    def store(self, number, place):
+        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
+        if self.kinds[number] != "state" or number in self.slots:
+            copy = self.value("state").number
+            self.steps.append((np.positive, [number, copy]))
+            number = copy
+        self.slots[number] = "out", place
+
+    def share(self):
+        """Give results their places; how many there are of each kind."""
+        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
+        last.update(dict.fromkeys(self.flags, len(self.steps)))
+        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
+        for k, (_, (*operands, result)) in enumerate(self.steps):
+            for n in dict.fromkeys(operands):
+                kind, place = self.slots.get(n, ("given", 0))
+                if last[n] == k and kind in free:
+                    free[kind].append(place)
+            if result not in self.slots:
+                kind = self.kinds[result]
+                if not free[kind]:
+                    free[kind].append(counts[kind])
+                    counts[kind] += 1
+                self.slots[result] = kind, free[kind].pop()
+        return counts
+
+
+_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_RECORDS = {}  # by function
+
+
+class _Replay:
+    """A record on arrays of so many states, which are made once."""
+
+    def __init__(self, p, function, sizes, states):
+        if function not in _RECORDS:
+            _RECORDS[function] = _Record(p, function, sizes)
+        r = _RECORDS[function]
+        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
+        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
+        made["out"] = _rows(sum(r.sizes), states)
+        self.inputs = [_rows(size, states) for size in sizes]
+        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        at = {number: np.array(value) for value, number in r.literals.items()}
+        for values, given in zip(r.inputs, self.inputs):
+            at |= {v.number: row for v, row in zip(values, given)}
+        if r.name is not None:
+            shared, loops = _constants(p, r.name)
+            values = sum((k for legs in loops for _, k in legs), shared)
+            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
+        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
+        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
+        flags = [at[n] for n in r.flags]
+        self.flags = flags if r.is_judged else flags[0]
+
+    def run(self, vectors):
+        """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
+        for rows, vector in zip(self.inputs, vectors):
+            rows[:] = vector
+        for operation, operands in self.steps:
+            operation(*operands)
+        return self.flags, self.arrays
+
+
+def _rows(count, states, kind=float):
+    """Rows of so many states, a cache line apart from each other."""
+    return np.empty((count, states + 8), dtype=kind)[:, :states]
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1440,7 +1628,12 @@ def _run_dynamics(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 27
+    (
+    M_tt_prps_xx, M_tt_xy, M_tt_xz, M_tt_prps_yy, M_tt_yz, M_tt_prps_zz, M_ta_xx, M_ta_prps_xy,
+        M_ta_prps_xz, M_ta_prps_yx, M_ta_yy, M_ta_prps_yz, M_ta_prps_zx, M_ta_prps_zy, M_ta_zz,
+        M_aa_prps_xx, M_aa_prps_xy, M_aa_prps_xz, M_aa_prps_yy, M_aa_prps_yz, M_aa_prps_zz,
+        Z_t_prps_x, Z_t_prps_y, Z_t_prps_z, Z_a_prps_x, Z_a_prps_y, Z_a_prps_z,
+    ) = [0.0] * 27
     for leg, k in legs[0]:
         (
         prps_Jc_2_in_axes2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5,
@@ -1622,16 +1815,41 @@ def _run_dynamics(m, X, V):
         prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x
         prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y
         ok = (
-        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
-            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
+            _TOLERANCE * 0.75)
         )
-        sums = m.added(sums, leg, (
-        prps_Q_xx, prps_Q_xy, prps_Q_xz, prps_Q_yy, prps_Q_yz, prps_Q_zz, prps_M_ta_t_3,
-            prps_M_ta_t_4, prps_M_ta_t_5, prps_M_ta_t_6, -prps_M_ta_t_8, prps_M_ta_t_9,
-            prps_M_ta_t_10, prps_M_ta_t_11, prps_M_ta_t_12, prps_M_aa_t, prps_M_aa_t_2,
-            prps_M_aa_t_3, prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6, prps_U_x, prps_U_y,
-            prps_U_z, prps_Z_a_t, prps_Z_a_t_2, prps_Z_a_t_3,
-        ))
+        # (M_tt) translational block of M
+        M_tt_prps_xx += prps_Q_xx
+        M_tt_xy += prps_Q_xy
+        M_tt_xz += prps_Q_xz
+        M_tt_prps_yy += prps_Q_yy
+        M_tt_yz += prps_Q_yz
+        M_tt_prps_zz += prps_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += prps_M_ta_t_3
+        M_ta_prps_xy += prps_M_ta_t_4
+        M_ta_prps_xz += prps_M_ta_t_5
+        M_ta_prps_yx += prps_M_ta_t_6
+        M_ta_yy += -prps_M_ta_t_8
+        M_ta_prps_yz += prps_M_ta_t_9
+        M_ta_prps_zx += prps_M_ta_t_10
+        M_ta_prps_zy += prps_M_ta_t_11
+        M_ta_zz += prps_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_prps_xx += prps_M_aa_t
+        M_aa_prps_xy += prps_M_aa_t_2
+        M_aa_prps_xz += prps_M_aa_t_3
+        M_aa_prps_yy += prps_M_aa_t_4
+        M_aa_prps_yz += prps_M_aa_t_5
+        M_aa_prps_zz += prps_M_aa_t_6
+        # (Z_t) translational part of Z
+        Z_t_prps_x += prps_U_x
+        Z_t_prps_y += prps_U_y
+        Z_t_prps_z += prps_U_z
+        # (Z_a) rotational part of Z
+        Z_a_prps_x += prps_Z_a_t
+        Z_a_prps_y += prps_Z_a_t_2
+        Z_a_prps_z += prps_Z_a_t_3
         # (prps-w_1) reciprocal vector 1
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
         out_H[_H_prps[1][leg]] = prps_base_frame_yz
@@ -1648,12 +1866,6 @@ def _run_dynamics(m, X, V):
         out_H[_H_prps[9][leg]] = prps_H_a_3_x
         out_H[_H_prps[10][leg]] = prps_H_a_3_y
         out_H[_H_prps[11][leg]] = prps_H_a_3_z
-    (
-    M_tt_prps_xx, M_tt_xy, M_tt_xz, M_tt_prps_yy, M_tt_yz, M_tt_prps_zz, M_ta_xx, M_ta_prps_xy,
-        M_ta_prps_xz, M_ta_prps_yx, M_ta_yy, M_ta_prps_yz, M_ta_prps_zx, M_ta_prps_zy, M_ta_zz,
-        M_aa_prps_xx, M_aa_prps_xy, M_aa_prps_xz, M_aa_prps_yy, M_aa_prps_yz, M_aa_prps_zz,
-        Z_t_prps_x, Z_t_prps_y, Z_t_prps_z, Z_a_prps_x, Z_a_prps_y, Z_a_prps_z,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_prps_xx + m_star
     M_tt_yy = M_tt_prps_yy + m_star
@@ -1796,7 +2008,11 @@ def _run_M(m, X):
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
-    sums = [0.0] * 21
+    (
+    M_tt_prps_xx, M_tt_xy, M_tt_xz, M_tt_prps_yy, M_tt_yz, M_tt_prps_zz, M_ta_xx, M_ta_prps_xy,
+        M_ta_prps_xz, M_ta_prps_yx, M_ta_yy, M_ta_prps_yz, M_ta_prps_zx, M_ta_prps_zy, M_ta_zz,
+        M_aa_prps_xx, M_aa_prps_xy, M_aa_prps_xz, M_aa_prps_yy, M_aa_prps_yz, M_aa_prps_zz,
+    ) = [0.0] * 21
     for leg, k in legs[0]:
         (
         prps_Jc_2_in_axes2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5,
@@ -1895,20 +2111,33 @@ def _run_M(m, X):
         prps_M_aa_t_5 = prps_M_ta_t_5*prps_q_z - prps_M_ta_t_12*prps_q_x
         prps_M_aa_t_6 = prps_M_ta_t_9*prps_q_x - prps_M_ta_t_5*prps_q_y
         ok = (
-        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
-            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
+            _TOLERANCE * 0.75)
         )
-        sums = m.added(sums, leg, (
-        prps_Q_xx, prps_Q_xy, prps_Q_xz, prps_Q_yy, prps_Q_yz, prps_Q_zz, prps_M_ta_t_3,
-            prps_M_ta_t_4, prps_M_ta_t_5, prps_M_ta_t_6, -prps_M_ta_t_8, prps_M_ta_t_9,
-            prps_M_ta_t_10, prps_M_ta_t_11, prps_M_ta_t_12, prps_M_aa_t, prps_M_aa_t_2,
-            prps_M_aa_t_3, prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6,
-        ))
-    (
-    M_tt_prps_xx, M_tt_xy, M_tt_xz, M_tt_prps_yy, M_tt_yz, M_tt_prps_zz, M_ta_xx, M_ta_prps_xy,
-        M_ta_prps_xz, M_ta_prps_yx, M_ta_yy, M_ta_prps_yz, M_ta_prps_zx, M_ta_prps_zy, M_ta_zz,
-        M_aa_prps_xx, M_aa_prps_xy, M_aa_prps_xz, M_aa_prps_yy, M_aa_prps_yz, M_aa_prps_zz,
-    ) = sums
+        # (M_tt) translational block of M
+        M_tt_prps_xx += prps_Q_xx
+        M_tt_xy += prps_Q_xy
+        M_tt_xz += prps_Q_xz
+        M_tt_prps_yy += prps_Q_yy
+        M_tt_yz += prps_Q_yz
+        M_tt_prps_zz += prps_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += prps_M_ta_t_3
+        M_ta_prps_xy += prps_M_ta_t_4
+        M_ta_prps_xz += prps_M_ta_t_5
+        M_ta_prps_yx += prps_M_ta_t_6
+        M_ta_yy += -prps_M_ta_t_8
+        M_ta_prps_yz += prps_M_ta_t_9
+        M_ta_prps_zx += prps_M_ta_t_10
+        M_ta_prps_zy += prps_M_ta_t_11
+        M_ta_zz += prps_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_prps_xx += prps_M_aa_t
+        M_aa_prps_xy += prps_M_aa_t_2
+        M_aa_prps_xz += prps_M_aa_t_3
+        M_aa_prps_yy += prps_M_aa_t_4
+        M_aa_prps_yz += prps_M_aa_t_5
+        M_aa_prps_zz += prps_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_prps_xx + m_star
     M_tt_yy = M_tt_prps_yy + m_star
@@ -2073,7 +2302,7 @@ def _run_Z(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 6
+    Z_t_prps_x, Z_t_prps_y, Z_t_prps_z, Z_a_prps_x, Z_a_prps_y, Z_a_prps_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
@@ -2198,13 +2427,17 @@ def _run_Z(m, X, V):
         prps_Z_a_t_2 = prps_U_x*prps_q_z - prps_U_z*prps_q_x
         prps_Z_a_t_3 = prps_U_y*prps_q_x - prps_U_x*prps_q_y
         ok = (
-        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
-            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
+            _TOLERANCE * 0.75)
         )
-        sums = m.added(sums, leg, (
-        prps_U_x, prps_U_y, prps_U_z, prps_Z_a_t, prps_Z_a_t_2, prps_Z_a_t_3,
-        ))
-    Z_t_prps_x, Z_t_prps_y, Z_t_prps_z, Z_a_prps_x, Z_a_prps_y, Z_a_prps_z = sums
+        # (Z_t) translational part of Z
+        Z_t_prps_x += prps_U_x
+        Z_t_prps_y += prps_U_y
+        Z_t_prps_z += prps_U_z
+        # (Z_a) rotational part of Z
+        Z_a_prps_x += prps_Z_a_t
+        Z_a_prps_y += prps_Z_a_t_2
+        Z_a_prps_z += prps_Z_a_t_3
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_prps_x
     Z_t_y = Z_p_y + Z_t_prps_y
@@ -2313,8 +2546,8 @@ def _run_H(m, X):
         prps_H_a_3_y = prps_q_z*prps_w_3_x - prps_q_x*prps_w_3_z
         prps_H_a_3_z = prps_q_x*prps_w_3_y - prps_q_y*prps_w_3_x
         ok = (
-        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
-            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
+            _TOLERANCE * 0.75)
         )
         # (prps-w_1) reciprocal vector 1
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
@@ -2479,7 +2712,7 @@ def _run_required(m, X, V, A):
     mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
     mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
     mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
-    sums = [0.0] * 6
+    R_t_t, R_t_t_2, R_t_t_3, R_a_prps_x, R_a_prps_y, R_a_prps_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
@@ -2615,12 +2848,17 @@ def _run_required(m, X, V, A):
         prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x
         prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y
         ok = (
-        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
-            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
+            _TOLERANCE * 0.75)
         )
-        sums = m.added(sums, leg, (
-        prps_c_x, prps_c_y, prps_c_z, prps_R_a_t, prps_R_a_t_2, prps_R_a_t_3,
-        ))
+        # (R_t) force that actuators and external wrench must give
+        R_t_t += prps_c_x
+        R_t_t_2 += prps_c_y
+        R_t_t_3 += prps_c_z
+        # (R_a) moment that actuators and external wrench must give
+        R_a_prps_x += prps_R_a_t
+        R_a_prps_y += prps_R_a_t_2
+        R_a_prps_z += prps_R_a_t_3
         # (prps-w_1) reciprocal vector 1
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
         out_H[_H_prps[1][leg]] = prps_base_frame_yz
@@ -2637,7 +2875,6 @@ def _run_required(m, X, V, A):
         out_H[_H_prps[9][leg]] = prps_H_a_3_x
         out_H[_H_prps[10][leg]] = prps_H_a_3_y
         out_H[_H_prps[11][leg]] = prps_H_a_3_z
-    R_t_t, R_t_t_2, R_t_t_3, R_a_prps_x, R_a_prps_y, R_a_prps_z = sums
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t
     R_t_y = f_p_y - R_t_t_2
@@ -2736,8 +2973,8 @@ def _run_inverse_kinematics(m, X):
         inv_prps_root_2 = 1.0/prps_root_2
         prps_q_2 = atan2(inv_prps_root_2*prps_S_in_axes0_y, inv_prps_root_2*prps_S_in_axes0_x)
         ok = (
-        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
-            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
+            _TOLERANCE * 0.75)
         )
         # (prps-q_1) displacement of joint 1
         out_q[_q_prps[0][leg]] = prps_S_in_axes0_z
@@ -2857,8 +3094,8 @@ def _run_joint_rates(m, X, V):
             prps_S_dot_z*(prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
-            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
+            _TOLERANCE * 0.75)
         )
         # (prps-qd_1) rate of joint 1
         out_qd[_qd_prps[0][leg]] = prps_S_dot_in_axes2_z
@@ -3017,8 +3254,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (prps-qdd_2) acceleration of joint 2
         prps_qdd_2 = inv_prps_root_2*prps_rel_in_axes2_y
         ok = (
-        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
-            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
+            _TOLERANCE * 0.75)
         )
         # (prps-qdd_1) acceleration of joint 1
         out_qdd[_qdd_prps[0][leg]] = prps_S_ddot_in_axes2_z
@@ -3096,7 +3333,7 @@ def _run_legs(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
-    out_drive = m.zeros("drive")
+    out_actuator = m.zeros("actuator")
     for leg, k in legs[0]:
         (
         prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
@@ -3223,22 +3460,22 @@ def _run_legs(m, X, V, A):
             prps_base_frame_zz*prps_c_true_in_axes2_z
         )
         ok = (
-        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
-            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
+            _TOLERANCE * 0.75)
         )
         # (prps-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_prps[0][leg]] = prps_c_true_x
         out_leg_force[_leg_force_prps[1][leg]] = prps_c_true_y
         out_leg_force[_leg_force_prps[2][leg]] = prps_c_true_z
         # (prps-w_1) reciprocal vector 1
-        out_drive[_drive_prps[0][leg]] = prps_base_frame_xz
-        out_drive[_drive_prps[1][leg]] = prps_base_frame_yz
-        out_drive[_drive_prps[2][leg]] = prps_base_frame_zz
+        out_actuator[_actuator_prps[0][leg]] = prps_base_frame_xz
+        out_actuator[_actuator_prps[1][leg]] = prps_base_frame_yz
+        out_actuator[_actuator_prps[2][leg]] = prps_base_frame_zz
         # (prps-w_3) reciprocal vector 3
-        out_drive[_drive_prps[3][leg]] = axis_x_prps_axes2_x
-        out_drive[_drive_prps[4][leg]] = axis_x_prps_axes2_y
-        out_drive[_drive_prps[5][leg]] = axis_x_prps_axes2_z
-    return ok, (out_leg_force, out_drive,)
+        out_actuator[_actuator_prps[3][leg]] = axis_x_prps_axes2_x
+        out_actuator[_actuator_prps[4][leg]] = axis_x_prps_axes2_y
+        out_actuator[_actuator_prps[5][leg]] = axis_x_prps_axes2_z
+    return ok, (out_leg_force, out_actuator,)
 
 
 # potential: 123 mul, 129 add, 3 div, 3 sqrt, 0 trig
@@ -3293,7 +3530,7 @@ def _run_potential(m, X):
         R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
         R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
-    sums = [0.0] * 1
+    potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
         prps_b_in_axes0_z, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
@@ -3350,13 +3587,11 @@ def _run_potential(m, X):
             prps_link1_mass*prps_potential_t_5 + prps_link2_mass*prps_potential_t_5)
         )
         ok = (
-        ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
-            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
+            _TOLERANCE * 0.75)
         )
-        sums = m.added(sums, leg, (
-        prps_potential_t_6,
-        ))
-    potential_t_2, = sums
+        # (potential) potential energy
+        potential_t_2 += prps_potential_t_6
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy
@@ -3414,7 +3649,7 @@ def _run_condition(m, X):
     out_reach = m.zeros("reach")
     # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
-    sums = [0.0] * 1
+    spread_prps, = [0.0] * 1
     for leg, k in legs[0]:
         (
         prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
@@ -3454,7 +3689,7 @@ def _run_condition(m, X):
         prps_w_3_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
         prps_w_3_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
         prps_w_3_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
-        # (prps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (prps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prps_pivot_size = abs(prps_rho2_2)
         prps_pivot_size_2 = abs(prps_root_2)
         prps_least_pivots = (
@@ -3477,12 +3712,11 @@ def _run_condition(m, X):
             prps_spread_t_3*prps_spread_t_3
         )
         clear = (
-        clear & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
-            (abs(prps_root_2) > _TOLERANCE * 0.75))
+        clear & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
+            _TOLERANCE * 0.75)
         )
-        sums = m.added(sums, leg, (
-        prps_spread_t_4,
-        ))
+        # (spread) rms distance of the platform points from their centroid
+        spread_prps += prps_spread_t_4
         # (prps-w_1) reciprocal vector 1
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
         out_H[_H_prps[1][leg]] = prps_base_frame_yz
@@ -3499,9 +3733,8 @@ def _run_condition(m, X):
         out_H[_H_prps[9][leg]] = prps_H_a_3_x
         out_H[_H_prps[10][leg]] = prps_H_a_3_y
         out_H[_H_prps[11][leg]] = prps_H_a_3_z
-        # (prps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (prps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_prps[0][leg]] = prps_least_pivots
-    spread_prps, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_prps)*spread_t
     # (spread) rms distance of the platform points from their centroid
@@ -3551,18 +3784,18 @@ def _steps_dynamics(m, X, V):
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    tau = _solve(H, subtract_2)
+    subtract_1 = required - extend_1
+    tau = _solve(H, subtract_1)
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H, tau)
-    extend_2 = wrench
-    add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z
-    A = _solve(M, subtract_4)
+    extend_1 = wrench
+    add_1 = times_1 + extend_1
+    subtract_1 = add_1 - Z
+    A = _solve(M, subtract_1)
     return (A,)
 
 
@@ -3574,10 +3807,10 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    solve_3 = _solve(H, subtract_2)
-    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    forces = _with_forces(leg_force, solve_3, drive, [0, 0, 1, 1, 2, 2])
+    subtract_1 = required - extend_1
+    solve_1 = _solve(H, subtract_1)
+    leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
+    forces = _with_forces(leg_force, solve_1, actuator, [0, 0, 1, 1, 2, 2])
     return (forces,)
 
 
@@ -3598,8 +3831,8 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths, length)
-    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5])
-    sigma = _singular_values(divide_rows_2)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
@@ -3678,24 +3911,24 @@ def _steps_rotation(m, X):
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
-    join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rotation_1))
+    X = join_1
     return (X,)
 
 
 def _steps_X_dot(m, X, V):
     take_1 = V[3:6]
     take_2 = X[3:7]
-    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
-    take_4 = V[0:3]
-    X_dot = np.concatenate((take_4, quaternion_rate_3))
+    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
+    take_3 = V[0:3]
+    X_dot = np.concatenate((take_3, quaternion_rate_1))
     return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
-    join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rpy_1))
+    X = join_1
     return (X,)
 
 
@@ -3704,9 +3937,9 @@ def _steps_retract(m, X, step):
     take_2 = X[3:7]
     take_3 = step[0:3]
     take_4 = step[3:6]
-    turn_quaternion_5 = _turned(take_2, take_4)
-    add_6 = take_1 + take_3
-    X_moved = np.concatenate((add_6, turn_quaternion_5))
+    turn_quaternion_1 = _turned(take_2, take_4)
+    add_1 = take_1 + take_3
+    X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
@@ -3715,9 +3948,9 @@ def _steps_difference(m, X0, X1):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    step = np.concatenate((subtract_6, turn_between_5))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
@@ -3726,17 +3959,17 @@ def _steps_interpolate(m, X0, X1, s):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    join_7 = np.concatenate((subtract_6, turn_between_5))
-    scale_8 = join_7 * s
-    take_9 = X0[0:3]
-    take_10 = X0[3:7]
-    take_11 = scale_8[0:3]
-    take_12 = scale_8[3:6]
-    turn_quaternion_13 = _turned(take_10, take_12)
-    add_14 = take_9 + take_11
-    X = np.concatenate((add_14, turn_quaternion_13))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    join_1 = np.concatenate((subtract_1, turn_between_1))
+    scale_1 = join_1 * s
+    take_5 = X0[0:3]
+    take_6 = X0[3:7]
+    take_7 = scale_1[0:3]
+    take_8 = scale_1[3:6]
+    turn_quaternion_1 = _turned(take_6, take_8)
+    add_1 = take_5 + take_7
+    X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
 

@@ -91,7 +91,7 @@ _SHAPES = {  # of the arrays that functions give
     "qd": (9,),
     "qdd": (9,),
     "leg_force": (3, 3),
-    "drive": (6, 3),
+    "actuator": (6, 3),
     "potential": (1,),
     "lengths": (2,),
     "pivots": (3,),
@@ -132,7 +132,7 @@ _leg_force_rrrs = (
     [1, 4, 7],
     [2, 5, 8],
 )
-_drive_rrrs = (
+_actuator_rrrs = (
     [0, 6, 12],
     [1, 7, 13],
     [2, 8, 14],
@@ -688,7 +688,7 @@ def _prepare(p):
     rrrs_g_in_axes1_z = (
     gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx + gravity_z*rrrs_base_frame_zx
     )
-    # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
     inv_rrrs_size_t_3 = 1.0/rrrs_size_t_3
     inv_rrrs_rho2_2_t = 1.0/rrrs_rho2_2_t
     inv_rrrs_size = 1.0/rrrs_size
@@ -993,50 +993,41 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
+_BLOCK = 4096  # states
 _SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
-    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    """Prepared values of a function, and for each loop over legs (leg, its values): floats."""
     if name not in p._cache:
         shared, loops = p._prepared()[name]
-        rows, columns = [], []
+        rows = []
         for count, values in loops:
-            table = [np.broadcast_to(v, count) for v in values]
-            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
-            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
-        p._cache[name] = tuple(map(float, shared)), rows, columns
+            table = [np.broadcast_to(v, count).tolist() for v in values]
+            rows.append([(leg, tuple(v[leg] for v in table)) for leg in range(count)])
+        p._cache[name] = tuple(map(float, shared)), rows
     return p._cache[name]
-
-
-def _sqrt(x):
-    return x**0.5 if x >= 0.0 else np.nan
 
 
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
-    sqrt = staticmethod(_sqrt)
+    sqrt = staticmethod(math.sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda leg, good: good)
 
-    def __init__(self, p, states):
+    def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)[:2]
+        return _constants(self.p, name)
 
     def zeros(self, name):
         return [0.0] * math.prod(_SHAPES[name])
-
-    def added(self, sums, leg, terms):
-        """Sums over the legs so far."""
-        return [a + b for a, b in zip(sums, terms)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1048,7 +1039,7 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, ValueError):
             ok = False
         if ok and all(all(map(math.isfinite, array)) for array in arrays):
             return arrays
@@ -1056,54 +1047,66 @@ class _Floats:
 
 
 class _Arrays:
-    """Functions of many states at once: arrays (states,), and (legs, states)."""
+    """Functions of many states at once, in arrays (states,).
+
+    Attributes:
+        kept: replays, by their place among those of a block, for other blocks of the same size;
+            None where there are too few states for it to pay to record.
+    """
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
-    def __init__(self, p, states):
-        self.p, self.states = p, states
+    def __init__(self, p, states, kept=None):
+        self.p, self.states, self.kept, self.done = p, states, kept, 0
 
     def constants(self, name):
-        """Shared values, and (all legs, their values) once for each loop."""
-        shared, _, columns = _constants(self.p, name)
-        return shared, columns
+        """Shared values, and (leg, its values) for every leg of each loop.
+
+        As arrays without dimensions: beside arrays they are faster than floats.
+        """
+        if (name, "arrays") not in self.p._cache:
+            shared, loops = _constants(self.p, name)
+            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
+            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
+        return self.p._cache[name, "arrays"]
 
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, legs, good):
-        """Whether it holds for all legs."""
-        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
-
-    def added(self, sums, legs, terms):
-        """Sums over the legs, all at once."""
-        shape = (legs.stop, self.states)
-        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+    def computed(self, function, names, vectors):
+        """Flags and arrays (*shape, states) of a function."""
+        if self.kept is None:
+            flags, arrays = function(self, *vectors)
+        else:
+            if self.done not in self.kept:
+                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+            flags, arrays = self.kept[self.done].run(vectors)
+            self.done += 1
+        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = function(self, *vectors)
-        for a in arrays:
-            ok = ok & np.isfinite(a).all(axis=0)
+        ok, arrays = self.computed(function, names, vectors)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
-                a[:, ~ok] = np.nan
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+                a[..., ~ok] = np.nan
+        return arrays
 
 
 class _Judged(_Arrays):
     """The same, and why a state is impossible."""
 
-    def __init__(self, p, states):
-        super().__init__(p, states)
+    def __init__(self, p, states, kept=None):
+        super().__init__(p, states, kept)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = function(self, *vectors)
+        (valid, reached, clear), arrays = self.computed(function, names, vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            self.failed[code] |= np.logical_not(good)
+        return arrays
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1115,9 +1118,9 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _mode(p, states):
+def _mode(p, states, kept=None):
     """The faster way for so many states."""
-    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
@@ -1150,26 +1153,27 @@ def _one(steps, p, given, shapes, read, unbounded):
 
 
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
-    """Results at many states, block by block."""
+    """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
+    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
-    if count > _BLOCK:
+    if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
         # of intermediate arrays from block to block instead of giving its pages back.
         np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
-        for first in range(0, max(count, 1), _BLOCK):
-            block = slice(first, min(first + _BLOCK, count))
+        for stop in (*range(size, count, max(size, 1)), count):
+            block = slice(stop - size, stop)
             states = [_states_last(v[block]) for v in flat]
-            m, good = mode(p, block.stop - first), possible[block]
+            m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
-            _all_finite(compress(states, read), good)
+            good &= _finite(compress(states, read), size)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
+            good &= _finite([np.minimum(a, 0.0) for a in found] if unbounded else found, size)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1186,10 +1190,194 @@ def _states_last(a):
     return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
 
 
-def _all_finite(arrays, good):
-    """Clear the flags of states in which some entry is not finite."""
-    for a in arrays:
-        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+def _finite(arrays, states):
+    """In which states all entries of arrays (*shape, states) are finite."""
+    flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
+    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    if not np.all(good):  # or the sum is too large
+        good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
+    return good
+
+
+def _least(x, y, out):
+    return np.minimum(x, y, out=out)
+
+
+def _both(operation):
+    """An operation of recorded values, and the same with its operands the other way round."""
+    return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
+
+
+class _Recorded:
+    """A value of a function that runs to be recorded."""
+
+    def __init__(self, record, number):
+        self.record, self.number = record, number
+
+    __add__, __radd__ = _both(np.add)
+    __sub__, __rsub__ = _both(np.subtract)
+    __mul__, __rmul__ = _both(np.multiply)
+    __truediv__, __rtruediv__ = _both(np.divide)
+    __and__, __rand__ = _both(np.logical_and)
+    __gt__, __lt__ = _both(np.greater)
+    __ge__, __le__ = _both(np.greater_equal)
+
+    def __neg__(self):
+        return self.record.made(np.negative, self)
+
+    def __abs__(self):
+        return self.record.made(np.absolute, self)
+
+
+class _Record:
+    """The operations of a function, recorded by running it, and where their results stand.
+
+    Results share arrays: what is read for the last time makes room for the next, so that a few
+    arrays do, which stay in the processor's cache.
+
+    Attributes:
+        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
+        steps: (operation, numbers of its operands and of its result).
+        slots: number of a result -> (kind of array or "out", place).
+        counts: how many arrays there are of every kind.
+    """
+
+    def __init__(self, p, function, sizes):
+        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
+        self.constant, self.literals = [], {}
+        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
+        flags, arrays = function(self, *self.inputs)
+        self.is_judged = isinstance(flags, tuple)
+        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes = [len(array) for array in arrays]
+        for place, value in enumerate(v for array in arrays for v in array):
+            self.store(self.number(value), place)
+        self.counts = self.share()
+
+    # ---- the mode in which the function runs ----
+
+    def sqrt(self, x):
+        return self.made(np.sqrt, x)
+
+    def sin(self, x):
+        return self.made(np.sin, x)
+
+    def cos(self, x):
+        return self.made(np.cos, x)
+
+    def atan2(self, y, x):
+        return self.made(np.arctan2, y, x)
+
+    def least(self, x, y):
+        return self.made(_least, x, y)
+
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        self.name, (shared, loops) = name, _constants(self.p, name)
+        shared = self.named(shared)
+        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+
+    # ---- what is recorded ----
+
+    def named(self, values):
+        """Values for constants."""
+        found = [self.value("one") for _ in values]
+        self.constant += [v.number for v in found]
+        return found
+
+    def value(self, kind):
+        self.kinds.append(kind)
+        return _Recorded(self, len(self.kinds) - 1)
+
+    def number(self, value):
+        """Number of a value, which may be a literal."""
+        if isinstance(value, _Recorded):
+            return value.number
+        if value not in self.literals:
+            self.literals[value] = self.value("one").number
+        return self.literals[value]
+
+    def made(self, operation, *operands):
+        """The result of an operation."""
+        numbers = [self.number(operand) for operand in operands]
+        if all(self.kinds[n] == "one" for n in numbers):
+            kind = "one"
+        else:
+            kind = "flag" if operation in _OF_FLAGS else "state"
+        result = self.value(kind)
+        self.steps.append((operation, [*numbers, result.number]))
+        return result
+
+    def store(self, number, place):
+        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
+        if self.kinds[number] != "state" or number in self.slots:
+            copy = self.value("state").number
+            self.steps.append((np.positive, [number, copy]))
+            number = copy
+        self.slots[number] = "out", place
+
+    def share(self):
+        """Give results their places; how many there are of each kind."""
+        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
+        last.update(dict.fromkeys(self.flags, len(self.steps)))
+        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
+        for k, (_, (*operands, result)) in enumerate(self.steps):
+            for n in dict.fromkeys(operands):
+                kind, place = self.slots.get(n, ("given", 0))
+                if last[n] == k and kind in free:
+                    free[kind].append(place)
+            if result not in self.slots:
+                kind = self.kinds[result]
+                if not free[kind]:
+                    free[kind].append(counts[kind])
+                    counts[kind] += 1
+                self.slots[result] = kind, free[kind].pop()
+        return counts
+
+
+_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_RECORDS = {}  # by function
+
+
+class _Replay:
+    """A record on arrays of so many states, which are made once."""
+
+    def __init__(self, p, function, sizes, states):
+        if function not in _RECORDS:
+            _RECORDS[function] = _Record(p, function, sizes)
+        r = _RECORDS[function]
+        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
+        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
+        made["out"] = _rows(sum(r.sizes), states)
+        self.inputs = [_rows(size, states) for size in sizes]
+        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        at = {number: np.array(value) for value, number in r.literals.items()}
+        for values, given in zip(r.inputs, self.inputs):
+            at |= {v.number: row for v, row in zip(values, given)}
+        if r.name is not None:
+            shared, loops = _constants(p, r.name)
+            values = sum((k for legs in loops for _, k in legs), shared)
+            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
+        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
+        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
+        flags = [at[n] for n in r.flags]
+        self.flags = flags if r.is_judged else flags[0]
+
+    def run(self, vectors):
+        """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
+        for rows, vector in zip(self.inputs, vectors):
+            rows[:] = vector
+        for operation, operands in self.steps:
+            operation(*operands)
+        return self.flags, self.arrays
+
+
+def _rows(count, states, kind=float):
+    """Rows of so many states, a cache line apart from each other."""
+    return np.empty((count, states + 8), dtype=kind)[:, :states]
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1606,7 +1794,12 @@ def _run_dynamics(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 27
+    (
+    M_tt_rrrs_xx, M_tt_xy, M_tt_xz, M_tt_rrrs_yy, M_tt_yz, M_tt_rrrs_zz, M_ta_xx, M_ta_rrrs_xy,
+        M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_yy, M_ta_rrrs_yz, M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_zz,
+        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
+        Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z,
+    ) = [0.0] * 27
     for leg, k in legs[0]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
@@ -2002,7 +2195,7 @@ def _run_dynamics(m, X, V):
         rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
             rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
         )
-        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_d_G_in_axes3_xz = (
         rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
             rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
@@ -2010,7 +2203,7 @@ def _run_dynamics(m, X, V):
             rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
             rrrs_J_3_in_spec3_yz*rrrs_s_3_t))
         )
-        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrs_d_c_in_axes3_xx = (
@@ -2134,18 +2327,43 @@ def _run_dynamics(m, X, V):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrs_Q_xx, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yy, rrrs_Q_yz, rrrs_Q_zz, rrrs_M_ta_t_3,
-            rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, -rrrs_M_ta_t_8, rrrs_M_ta_t_9,
-            rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t, rrrs_M_aa_t_2,
-            rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6, rrrs_U_x, rrrs_U_y,
-            rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
-        ))
+        # (M_tt) translational block of M
+        M_tt_rrrs_xx += rrrs_Q_xx
+        M_tt_xy += rrrs_Q_xy
+        M_tt_xz += rrrs_Q_xz
+        M_tt_rrrs_yy += rrrs_Q_yy
+        M_tt_yz += rrrs_Q_yz
+        M_tt_rrrs_zz += rrrs_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += rrrs_M_ta_t_3
+        M_ta_rrrs_xy += rrrs_M_ta_t_4
+        M_ta_rrrs_xz += rrrs_M_ta_t_5
+        M_ta_rrrs_yx += rrrs_M_ta_t_6
+        M_ta_yy += -rrrs_M_ta_t_8
+        M_ta_rrrs_yz += rrrs_M_ta_t_9
+        M_ta_rrrs_zx += rrrs_M_ta_t_10
+        M_ta_rrrs_zy += rrrs_M_ta_t_11
+        M_ta_zz += rrrs_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_rrrs_xx += rrrs_M_aa_t
+        M_aa_rrrs_xy += rrrs_M_aa_t_2
+        M_aa_rrrs_xz += rrrs_M_aa_t_3
+        M_aa_rrrs_yy += rrrs_M_aa_t_4
+        M_aa_rrrs_yz += rrrs_M_aa_t_5
+        M_aa_rrrs_zz += rrrs_M_aa_t_6
+        # (Z_t) translational part of Z
+        Z_t_rrrs_x += rrrs_U_x
+        Z_t_rrrs_y += rrrs_U_y
+        Z_t_rrrs_z += rrrs_U_z
+        # (Z_a) rotational part of Z
+        Z_a_rrrs_x += rrrs_Z_a_t
+        Z_a_rrrs_y += rrrs_Z_a_t_2
+        Z_a_rrrs_z += rrrs_Z_a_t_3
         # (rrrs-w_1) reciprocal vector 1
         out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
         out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
@@ -2162,12 +2380,6 @@ def _run_dynamics(m, X, V):
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
-    (
-    M_tt_rrrs_xx, M_tt_xy, M_tt_xz, M_tt_rrrs_yy, M_tt_yz, M_tt_rrrs_zz, M_ta_xx, M_ta_rrrs_xy,
-        M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_yy, M_ta_rrrs_yz, M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_zz,
-        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
-        Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rrrs_xx + m_star
     M_tt_yy = M_tt_rrrs_yy + m_star
@@ -2310,7 +2522,11 @@ def _run_M(m, X):
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
-    sums = [0.0] * 21
+    (
+    M_tt_rrrs_xx, M_tt_xy, M_tt_xz, M_tt_rrrs_yy, M_tt_yz, M_tt_rrrs_zz, M_ta_xx, M_ta_rrrs_xy,
+        M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_yy, M_ta_rrrs_yz, M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_zz,
+        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
+    ) = [0.0] * 21
     for leg, k in legs[0]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
@@ -2447,7 +2663,7 @@ def _run_M(m, X):
         rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
             rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
         )
-        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_d_G_in_axes3_xz = (
         rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
             rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
@@ -2561,22 +2777,35 @@ def _run_M(m, X):
         rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
         rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrs_Q_xx, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yy, rrrs_Q_yz, rrrs_Q_zz, rrrs_M_ta_t_3,
-            rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, -rrrs_M_ta_t_8, rrrs_M_ta_t_9,
-            rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t, rrrs_M_aa_t_2,
-            rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
-        ))
-    (
-    M_tt_rrrs_xx, M_tt_xy, M_tt_xz, M_tt_rrrs_yy, M_tt_yz, M_tt_rrrs_zz, M_ta_xx, M_ta_rrrs_xy,
-        M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_yy, M_ta_rrrs_yz, M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_zz,
-        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
-    ) = sums
+        # (M_tt) translational block of M
+        M_tt_rrrs_xx += rrrs_Q_xx
+        M_tt_xy += rrrs_Q_xy
+        M_tt_xz += rrrs_Q_xz
+        M_tt_rrrs_yy += rrrs_Q_yy
+        M_tt_yz += rrrs_Q_yz
+        M_tt_rrrs_zz += rrrs_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += rrrs_M_ta_t_3
+        M_ta_rrrs_xy += rrrs_M_ta_t_4
+        M_ta_rrrs_xz += rrrs_M_ta_t_5
+        M_ta_rrrs_yx += rrrs_M_ta_t_6
+        M_ta_yy += -rrrs_M_ta_t_8
+        M_ta_rrrs_yz += rrrs_M_ta_t_9
+        M_ta_rrrs_zx += rrrs_M_ta_t_10
+        M_ta_rrrs_zy += rrrs_M_ta_t_11
+        M_ta_zz += rrrs_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_rrrs_xx += rrrs_M_aa_t
+        M_aa_rrrs_xy += rrrs_M_aa_t_2
+        M_aa_rrrs_xz += rrrs_M_aa_t_3
+        M_aa_rrrs_yy += rrrs_M_aa_t_4
+        M_aa_rrrs_yz += rrrs_M_aa_t_5
+        M_aa_rrrs_zz += rrrs_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rrrs_xx + m_star
     M_tt_yy = M_tt_rrrs_yy + m_star
@@ -2741,7 +2970,7 @@ def _run_Z(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 6
+    Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
@@ -3090,7 +3319,7 @@ def _run_Z(m, X, V):
         rrrs_N_1_o_in_axes1_z = (
         rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2 + rrrs_N_2_o_in_axes2_y*rrrs_c_2
         )
-        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
@@ -3127,15 +3356,19 @@ def _run_Z(m, X, V):
         rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
         rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
-        ))
-    Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z = sums
+        # (Z_t) translational part of Z
+        Z_t_rrrs_x += rrrs_U_x
+        Z_t_rrrs_y += rrrs_U_y
+        Z_t_rrrs_z += rrrs_U_z
+        # (Z_a) rotational part of Z
+        Z_a_rrrs_x += rrrs_Z_a_t
+        Z_a_rrrs_y += rrrs_Z_a_t_2
+        Z_a_rrrs_z += rrrs_Z_a_t_3
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_rrrs_x
     Z_t_y = Z_p_y + Z_t_rrrs_y
@@ -3329,10 +3562,10 @@ def _run_H(m, X):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
         # (rrrs-w_1) reciprocal vector 1
         out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
@@ -3497,7 +3730,7 @@ def _run_required(m, X, V, A):
     mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
     mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
     mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
-    sums = [0.0] * 6
+    R_t_t, R_t_t_2, R_t_t_3, R_a_rrrs_x, R_a_rrrs_y, R_a_rrrs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
@@ -3847,7 +4080,7 @@ def _run_required(m, X, V, A):
         rrrs_N_1_in_axes1_z = (
         rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 + rrrs_N_2_in_axes2_y*rrrs_c_2
         )
-        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_in_axes3_x = (
@@ -3889,14 +4122,19 @@ def _run_required(m, X, V, A):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrs_c_x, rrrs_c_y, rrrs_c_z, rrrs_R_a_t, rrrs_R_a_t_2, rrrs_R_a_t_3,
-        ))
+        # (R_t) force that actuators and external wrench must give
+        R_t_t += rrrs_c_x
+        R_t_t_2 += rrrs_c_y
+        R_t_t_3 += rrrs_c_z
+        # (R_a) moment that actuators and external wrench must give
+        R_a_rrrs_x += rrrs_R_a_t
+        R_a_rrrs_y += rrrs_R_a_t_2
+        R_a_rrrs_z += rrrs_R_a_t_3
         # (rrrs-w_1) reciprocal vector 1
         out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
         out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
@@ -3913,7 +4151,6 @@ def _run_required(m, X, V, A):
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
-    R_t_t, R_t_t_2, R_t_t_3, R_a_rrrs_x, R_a_rrrs_y, R_a_rrrs_z = sums
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t
     R_t_y = f_p_y - R_t_t_2
@@ -4050,8 +4287,8 @@ def _run_inverse_kinematics(m, X):
             inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
         )
         # (rrrs-q_1) displacement of joint 1
         out_q[_q_rrrs[0][leg]] = rrrs_q_1
@@ -4245,10 +4482,10 @@ def _run_joint_rates(m, X, V):
             rrrs_r_2_t*rrrs_s_3_t))
         )
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
         # (rrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrs[0][leg]] = rrrs_qd_1
@@ -4544,10 +4781,10 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrs-qdd_3) acceleration of joint 3
         rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
         # (rrrs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rrrs[0][leg]] = rrrs_qdd_1
@@ -4626,7 +4863,7 @@ def _run_legs(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
-    out_drive = m.zeros("drive")
+    out_actuator = m.zeros("actuator")
     for leg, k in legs[0]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
@@ -4976,7 +5213,7 @@ def _run_legs(m, X, V, A):
         rrrs_N_1_in_axes1_z = (
         rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 + rrrs_N_2_in_axes2_y*rrrs_c_2
         )
-        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_in_axes3_x = (
@@ -5010,24 +5247,24 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z
         )
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
         # (rrrs-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rrrs[0][leg]] = rrrs_c_true_x
         out_leg_force[_leg_force_rrrs[1][leg]] = rrrs_c_true_y
         out_leg_force[_leg_force_rrrs[2][leg]] = rrrs_c_true_z
         # (rrrs-w_1) reciprocal vector 1
-        out_drive[_drive_rrrs[0][leg]] = rrrs_w_1_x
-        out_drive[_drive_rrrs[1][leg]] = rrrs_w_1_y
-        out_drive[_drive_rrrs[2][leg]] = rrrs_w_1_z
+        out_actuator[_actuator_rrrs[0][leg]] = rrrs_w_1_x
+        out_actuator[_actuator_rrrs[1][leg]] = rrrs_w_1_y
+        out_actuator[_actuator_rrrs[2][leg]] = rrrs_w_1_z
         # (rrrs-w_2) reciprocal vector 2
-        out_drive[_drive_rrrs[3][leg]] = rrrs_w_2_x
-        out_drive[_drive_rrrs[4][leg]] = rrrs_w_2_y
-        out_drive[_drive_rrrs[5][leg]] = rrrs_w_2_z
-    return ok, (out_leg_force, out_drive,)
+        out_actuator[_actuator_rrrs[3][leg]] = rrrs_w_2_x
+        out_actuator[_actuator_rrrs[4][leg]] = rrrs_w_2_y
+        out_actuator[_actuator_rrrs[5][leg]] = rrrs_w_2_z
+    return ok, (out_leg_force, out_actuator,)
 
 
 # potential: 240 mul, 171 add, 6 div, 6 sqrt, 0 trig
@@ -5082,7 +5319,7 @@ def _run_potential(m, X):
         R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
         R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
-    sums = [0.0] * 1
+    potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
@@ -5181,13 +5418,11 @@ def _run_potential(m, X):
             rrrs_b_in_spec1_z*rrrs_link2_mass)
         )
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
         )
-        sums = m.added(sums, leg, (
-        rrrs_potential_t_8,
-        ))
-    potential_t_2, = sums
+        # (potential) potential energy
+        potential_t_2 += rrrs_potential_t_8
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy
@@ -5245,7 +5480,7 @@ def _run_condition(m, X):
     out_reach = m.zeros("reach")
     # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
-    sums = [0.0] * 1
+    spread_rrrs, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
@@ -5371,7 +5606,7 @@ def _run_condition(m, X):
         rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
             axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x)
         )
-        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_pivot_size = abs(rrrs_rho2_1)
         rrrs_pivot_size_2 = abs(rrrs_rho2_2)
         rrrs_pivot_size_3 = abs(rrrs_v_1_in_axes3_z)
@@ -5398,15 +5633,13 @@ def _run_condition(m, X):
             rrrs_spread_t_3*rrrs_spread_t_3
         )
         clear = (
-        clear & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) &
-            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+        clear & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE *
+            rrrs_size) & (abs(rrrs_r_2_in_axes3_y) > _TOLERANCE * rrrs_size)
         )
-        reached = reached & m.every(leg, (rrrs_disc_2 >= 0.0))
-        sums = m.added(sums, leg, (
-        rrrs_spread_t_4,
-        ))
+        reached = reached & (rrrs_disc_2 >= 0.0)
+        # (spread) rms distance of the platform points from their centroid
+        spread_rrrs += rrrs_spread_t_4
         # (rrrs-w_1) reciprocal vector 1
         out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
         out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
@@ -5423,10 +5656,9 @@ def _run_condition(m, X):
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
-        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrrs[0][leg]] = rrrs_least_pivots
         out_reach[_reach_rrrs[0][leg]] = rrrs_disc_2
-    spread_rrrs, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_rrrs)*spread_t
     # (spread) rms distance of the platform points from their centroid
@@ -5476,18 +5708,18 @@ def _steps_dynamics(m, X, V):
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    tau = _solve(H, subtract_2)
+    subtract_1 = required - extend_1
+    tau = _solve(H, subtract_1)
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H, tau)
-    extend_2 = wrench
-    add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z
-    A = _solve(M, subtract_4)
+    extend_1 = wrench
+    add_1 = times_1 + extend_1
+    subtract_1 = add_1 - Z
+    A = _solve(M, subtract_1)
     return (A,)
 
 
@@ -5499,10 +5731,10 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    solve_3 = _solve(H, subtract_2)
-    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    forces = _with_forces(leg_force, solve_3, drive, [0, 0, 1, 1, 2, 2])
+    subtract_1 = required - extend_1
+    solve_1 = _solve(H, subtract_1)
+    leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
+    forces = _with_forces(leg_force, solve_1, actuator, [0, 0, 1, 1, 2, 2])
     return (forces,)
 
 
@@ -5523,16 +5755,16 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths, length)
-    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5])
-    sigma = _singular_values(divide_rows_2)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q[[0, 1, 3, 4, 6, 7]]
-    subtract_2 = q_actuated - take_1
-    gap = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5])
+    subtract_1 = q_actuated - take_1
+    gap = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5])
     return (gap,)
 
 
@@ -5604,24 +5836,24 @@ def _steps_rotation(m, X):
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
-    join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rotation_1))
+    X = join_1
     return (X,)
 
 
 def _steps_X_dot(m, X, V):
     take_1 = V[3:6]
     take_2 = X[3:7]
-    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
-    take_4 = V[0:3]
-    X_dot = np.concatenate((take_4, quaternion_rate_3))
+    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
+    take_3 = V[0:3]
+    X_dot = np.concatenate((take_3, quaternion_rate_1))
     return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
-    join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rpy_1))
+    X = join_1
     return (X,)
 
 
@@ -5630,9 +5862,9 @@ def _steps_retract(m, X, step):
     take_2 = X[3:7]
     take_3 = step[0:3]
     take_4 = step[3:6]
-    turn_quaternion_5 = _turned(take_2, take_4)
-    add_6 = take_1 + take_3
-    X_moved = np.concatenate((add_6, turn_quaternion_5))
+    turn_quaternion_1 = _turned(take_2, take_4)
+    add_1 = take_1 + take_3
+    X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
@@ -5641,9 +5873,9 @@ def _steps_difference(m, X0, X1):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    step = np.concatenate((subtract_6, turn_between_5))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
@@ -5652,17 +5884,17 @@ def _steps_interpolate(m, X0, X1, s):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    join_7 = np.concatenate((subtract_6, turn_between_5))
-    scale_8 = join_7 * s
-    take_9 = X0[0:3]
-    take_10 = X0[3:7]
-    take_11 = scale_8[0:3]
-    take_12 = scale_8[3:6]
-    turn_quaternion_13 = _turned(take_10, take_12)
-    add_14 = take_9 + take_11
-    X = np.concatenate((add_14, turn_quaternion_13))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    join_1 = np.concatenate((subtract_1, turn_between_1))
+    scale_1 = join_1 * s
+    take_5 = X0[0:3]
+    take_6 = X0[3:7]
+    take_7 = scale_1[0:3]
+    take_8 = scale_1[3:6]
+    turn_quaternion_1 = _turned(take_6, take_8)
+    add_1 = take_5 + take_7
+    X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
 

@@ -54,6 +54,19 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+#define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
+
+/* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
+#define NQ ((size_t)HYBRID_3RRRS_REDUNDANT_NQ)
+#define NV ((size_t)HYBRID_3RRRS_REDUNDANT_NV)
+#define NU ((size_t)HYBRID_3RRRS_REDUNDANT_NU)
+#define NC ((size_t)HYBRID_3RRRS_REDUNDANT_NC)
+#define NW ((size_t)HYBRID_3RRRS_REDUNDANT_NW)
+#define NJ ((size_t)HYBRID_3RRRS_REDUNDANT_NJ)
+#define NL ((size_t)3)
+#define LEGS_OF_rrrrs ((size_t)1)
+#define LEGS_OF_rrrs ((size_t)2)
+
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
@@ -114,6 +127,12 @@ INLINE void clear(real *x, size_t n)
     for (size_t i = 0; i < n; ++i) {
         x[i] = 0;
     }
+}
+
+/* What a leg adds to a sum, or gives alone. */
+INLINE void gather(real *sum, int add, real term)
+{
+    *sum = add ? *sum + term : term;
 }
 
 INLINE int is_finite(real x)
@@ -512,70 +531,70 @@ static int acceptable(const hybrid_3rrrs_redundant_params *p)
     ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->rrrrs_base_point[0][0], 3);
-    ok &= all_within(&p->rrrrs_base_frame[0][0][0], 9);
-    ok &= all_rotations(&p->rrrrs_base_frame[0][0][0], 1);
-    ok &= all_within(&p->rrrrs_platform_point[0][0], 3);
-    ok &= all_within(&p->rrrrs_joint2_offset[0][0], 3);
-    ok &= all_zero(&p->rrrrs_joint2_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->rrrrs_joint2_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrrrs_joint3_offset[0][0], 3);
-    ok &= all_zero(&p->rrrrs_joint3_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->rrrrs_joint3_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrrrs_joint4_offset[0][0], 3);
-    ok &= all_zero(&p->rrrrs_joint4_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->rrrrs_joint4_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrrrs_platform_joint_offset[0][0], 3);
-    ok &= all_zero(&p->rrrrs_platform_joint_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->rrrrs_platform_joint_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->rrrrs_link1_mass[0], 1);
-    ok &= none_negative(&p->rrrrs_link1_mass[0], 1);
-    ok &= all_within(&p->rrrrs_link1_centre_of_mass[0][0], 3);
-    ok &= all_within(&p->rrrrs_link1_inertia[0][0][0], 9);
-    ok &= all_inertias(&p->rrrrs_link1_inertia[0][0][0], 1);
-    ok &= all_within(&p->rrrrs_link2_mass[0], 1);
-    ok &= none_negative(&p->rrrrs_link2_mass[0], 1);
-    ok &= all_within(&p->rrrrs_link2_centre_of_mass[0][0], 3);
-    ok &= all_within(&p->rrrrs_link2_inertia[0][0][0], 9);
-    ok &= all_inertias(&p->rrrrs_link2_inertia[0][0][0], 1);
-    ok &= all_within(&p->rrrrs_link3_mass[0], 1);
-    ok &= none_negative(&p->rrrrs_link3_mass[0], 1);
-    ok &= all_within(&p->rrrrs_link3_centre_of_mass[0][0], 3);
-    ok &= all_within(&p->rrrrs_link3_inertia[0][0][0], 9);
-    ok &= all_inertias(&p->rrrrs_link3_inertia[0][0][0], 1);
-    ok &= all_within(&p->rrrrs_link4_mass[0], 1);
-    ok &= none_negative(&p->rrrrs_link4_mass[0], 1);
-    ok &= all_within(&p->rrrrs_link4_centre_of_mass[0][0], 3);
-    ok &= all_within(&p->rrrrs_link4_inertia[0][0][0], 9);
-    ok &= all_inertias(&p->rrrrs_link4_inertia[0][0][0], 1);
-    ok &= all_within(&p->rrrs_base_point[0][0], 6);
-    ok &= all_within(&p->rrrs_base_frame[0][0][0], 18);
-    ok &= all_rotations(&p->rrrs_base_frame[0][0][0], 2);
-    ok &= all_within(&p->rrrs_platform_point[0][0], 6);
-    ok &= all_within(&p->rrrs_joint2_offset[0][0], 6);
-    ok &= all_zero(&p->rrrs_joint2_offset[0][0] + 1, 2, 3);
-    ok &= all_zero(&p->rrrs_joint2_offset[0][0] + 2, 2, 3);
-    ok &= all_within(&p->rrrs_joint3_offset[0][0], 6);
-    ok &= all_zero(&p->rrrs_joint3_offset[0][0] + 1, 2, 3);
-    ok &= all_zero(&p->rrrs_joint3_offset[0][0] + 2, 2, 3);
-    ok &= all_within(&p->rrrs_platform_joint_offset[0][0], 6);
-    ok &= all_zero(&p->rrrs_platform_joint_offset[0][0] + 1, 2, 3);
-    ok &= all_zero(&p->rrrs_platform_joint_offset[0][0] + 2, 2, 3);
-    ok &= all_within(&p->rrrs_link1_mass[0], 2);
-    ok &= none_negative(&p->rrrs_link1_mass[0], 2);
-    ok &= all_within(&p->rrrs_link1_centre_of_mass[0][0], 6);
-    ok &= all_within(&p->rrrs_link1_inertia[0][0][0], 18);
-    ok &= all_inertias(&p->rrrs_link1_inertia[0][0][0], 2);
-    ok &= all_within(&p->rrrs_link2_mass[0], 2);
-    ok &= none_negative(&p->rrrs_link2_mass[0], 2);
-    ok &= all_within(&p->rrrs_link2_centre_of_mass[0][0], 6);
-    ok &= all_within(&p->rrrs_link2_inertia[0][0][0], 18);
-    ok &= all_inertias(&p->rrrs_link2_inertia[0][0][0], 2);
-    ok &= all_within(&p->rrrs_link3_mass[0], 2);
-    ok &= none_negative(&p->rrrs_link3_mass[0], 2);
-    ok &= all_within(&p->rrrs_link3_centre_of_mass[0][0], 6);
-    ok &= all_within(&p->rrrs_link3_inertia[0][0][0], 18);
-    ok &= all_inertias(&p->rrrs_link3_inertia[0][0][0], 2);
+    ok &= all_within(&p->rrrrs_base_point[0][0], 3*LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_base_frame[0][0][0], 9*LEGS_OF_rrrrs);
+    ok &= all_rotations(&p->rrrrs_base_frame[0][0][0], LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_platform_point[0][0], 3*LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_joint2_offset[0][0], 3*LEGS_OF_rrrrs);
+    ok &= all_zero(&p->rrrrs_joint2_offset[0][0] + 1, LEGS_OF_rrrrs, 3);
+    ok &= all_zero(&p->rrrrs_joint2_offset[0][0] + 2, LEGS_OF_rrrrs, 3);
+    ok &= all_within(&p->rrrrs_joint3_offset[0][0], 3*LEGS_OF_rrrrs);
+    ok &= all_zero(&p->rrrrs_joint3_offset[0][0] + 1, LEGS_OF_rrrrs, 3);
+    ok &= all_zero(&p->rrrrs_joint3_offset[0][0] + 2, LEGS_OF_rrrrs, 3);
+    ok &= all_within(&p->rrrrs_joint4_offset[0][0], 3*LEGS_OF_rrrrs);
+    ok &= all_zero(&p->rrrrs_joint4_offset[0][0] + 1, LEGS_OF_rrrrs, 3);
+    ok &= all_zero(&p->rrrrs_joint4_offset[0][0] + 2, LEGS_OF_rrrrs, 3);
+    ok &= all_within(&p->rrrrs_platform_joint_offset[0][0], 3*LEGS_OF_rrrrs);
+    ok &= all_zero(&p->rrrrs_platform_joint_offset[0][0] + 1, LEGS_OF_rrrrs, 3);
+    ok &= all_zero(&p->rrrrs_platform_joint_offset[0][0] + 2, LEGS_OF_rrrrs, 3);
+    ok &= all_within(&p->rrrrs_link1_mass[0], LEGS_OF_rrrrs);
+    ok &= none_negative(&p->rrrrs_link1_mass[0], LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_link1_centre_of_mass[0][0], 3*LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_link1_inertia[0][0][0], 9*LEGS_OF_rrrrs);
+    ok &= all_inertias(&p->rrrrs_link1_inertia[0][0][0], LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_link2_mass[0], LEGS_OF_rrrrs);
+    ok &= none_negative(&p->rrrrs_link2_mass[0], LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_link2_centre_of_mass[0][0], 3*LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_link2_inertia[0][0][0], 9*LEGS_OF_rrrrs);
+    ok &= all_inertias(&p->rrrrs_link2_inertia[0][0][0], LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_link3_mass[0], LEGS_OF_rrrrs);
+    ok &= none_negative(&p->rrrrs_link3_mass[0], LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_link3_centre_of_mass[0][0], 3*LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_link3_inertia[0][0][0], 9*LEGS_OF_rrrrs);
+    ok &= all_inertias(&p->rrrrs_link3_inertia[0][0][0], LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_link4_mass[0], LEGS_OF_rrrrs);
+    ok &= none_negative(&p->rrrrs_link4_mass[0], LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_link4_centre_of_mass[0][0], 3*LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrrs_link4_inertia[0][0][0], 9*LEGS_OF_rrrrs);
+    ok &= all_inertias(&p->rrrrs_link4_inertia[0][0][0], LEGS_OF_rrrrs);
+    ok &= all_within(&p->rrrs_base_point[0][0], 3*LEGS_OF_rrrs);
+    ok &= all_within(&p->rrrs_base_frame[0][0][0], 9*LEGS_OF_rrrs);
+    ok &= all_rotations(&p->rrrs_base_frame[0][0][0], LEGS_OF_rrrs);
+    ok &= all_within(&p->rrrs_platform_point[0][0], 3*LEGS_OF_rrrs);
+    ok &= all_within(&p->rrrs_joint2_offset[0][0], 3*LEGS_OF_rrrs);
+    ok &= all_zero(&p->rrrs_joint2_offset[0][0] + 1, LEGS_OF_rrrs, 3);
+    ok &= all_zero(&p->rrrs_joint2_offset[0][0] + 2, LEGS_OF_rrrs, 3);
+    ok &= all_within(&p->rrrs_joint3_offset[0][0], 3*LEGS_OF_rrrs);
+    ok &= all_zero(&p->rrrs_joint3_offset[0][0] + 1, LEGS_OF_rrrs, 3);
+    ok &= all_zero(&p->rrrs_joint3_offset[0][0] + 2, LEGS_OF_rrrs, 3);
+    ok &= all_within(&p->rrrs_platform_joint_offset[0][0], 3*LEGS_OF_rrrs);
+    ok &= all_zero(&p->rrrs_platform_joint_offset[0][0] + 1, LEGS_OF_rrrs, 3);
+    ok &= all_zero(&p->rrrs_platform_joint_offset[0][0] + 2, LEGS_OF_rrrs, 3);
+    ok &= all_within(&p->rrrs_link1_mass[0], LEGS_OF_rrrs);
+    ok &= none_negative(&p->rrrs_link1_mass[0], LEGS_OF_rrrs);
+    ok &= all_within(&p->rrrs_link1_centre_of_mass[0][0], 3*LEGS_OF_rrrs);
+    ok &= all_within(&p->rrrs_link1_inertia[0][0][0], 9*LEGS_OF_rrrs);
+    ok &= all_inertias(&p->rrrs_link1_inertia[0][0][0], LEGS_OF_rrrs);
+    ok &= all_within(&p->rrrs_link2_mass[0], LEGS_OF_rrrs);
+    ok &= none_negative(&p->rrrs_link2_mass[0], LEGS_OF_rrrs);
+    ok &= all_within(&p->rrrs_link2_centre_of_mass[0][0], 3*LEGS_OF_rrrs);
+    ok &= all_within(&p->rrrs_link2_inertia[0][0][0], 9*LEGS_OF_rrrs);
+    ok &= all_inertias(&p->rrrs_link2_inertia[0][0][0], LEGS_OF_rrrs);
+    ok &= all_within(&p->rrrs_link3_mass[0], LEGS_OF_rrrs);
+    ok &= none_negative(&p->rrrs_link3_mass[0], LEGS_OF_rrrs);
+    ok &= all_within(&p->rrrs_link3_centre_of_mass[0][0], 3*LEGS_OF_rrrs);
+    ok &= all_within(&p->rrrs_link3_inertia[0][0][0], 9*LEGS_OF_rrrs);
+    ok &= all_inertias(&p->rrrs_link3_inertia[0][0][0], LEGS_OF_rrrs);
     return ok;
 }
 
@@ -585,30 +604,20 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real m_star_rrrrs = 0;
-    real h_star_rrrrs_in_platform_x = 0;
-    real h_star_rrrrs_in_platform_y = 0;
-    real h_star_rrrrs_in_platform_z = 0;
-    real J_star_rrrrs_in_platform_xx = 0;
-    real J_star_rrrrs_in_platform_xy = 0;
-    real J_star_rrrrs_in_platform_xz = 0;
-    real J_star_rrrrs_in_platform_yy = 0;
-    real J_star_rrrrs_in_platform_yz = 0;
-    real J_star_rrrrs_in_platform_zz = 0;
+    real m_star_of_legs = 0;
+    real h_star_in_platform_x_of_legs = 0;
+    real h_star_in_platform_y_of_legs = 0;
+    real h_star_in_platform_z_of_legs = 0;
+    real J_star_in_platform_xx_of_legs = 0;
+    real J_star_in_platform_xy_of_legs = 0;
+    real J_star_in_platform_xz_of_legs = 0;
+    real J_star_in_platform_yy_of_legs = 0;
+    real J_star_in_platform_yz_of_legs = 0;
+    real J_star_in_platform_zz_of_legs = 0;
     real b_c_rrrrs_in_platform_x = 0;
     real b_c_rrrrs_in_platform_y = 0;
     real b_c_rrrrs_in_platform_z = 0;
     real legs_size_rrrrs = 0;
-    real m_star_rrrs = 0;
-    real h_star_rrrs_in_platform_x = 0;
-    real h_star_rrrs_in_platform_y = 0;
-    real h_star_rrrs_in_platform_z = 0;
-    real J_star_rrrs_in_platform_xx = 0;
-    real J_star_rrrs_in_platform_xy = 0;
-    real J_star_rrrs_in_platform_xz = 0;
-    real J_star_rrrs_in_platform_yy = 0;
-    real J_star_rrrs_in_platform_yz = 0;
-    real J_star_rrrs_in_platform_zz = 0;
     real b_c_rrrs_in_platform_x = 0;
     real b_c_rrrs_in_platform_y = 0;
     real b_c_rrrs_in_platform_z = 0;
@@ -644,7 +653,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
         const size_t own = leg;
         const real rrrrs_base_point_x = params->rrrrs_base_point[own][0];
         const real rrrrs_base_point_y = params->rrrrs_base_point[own][1];
@@ -839,19 +848,19 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrrs_Sigma_2_in_axes2_yy = rrrrs_trace_J_2 - rrrrs_J_2_in_spec2_yy;
         const real rrrrs_Sigma_2_in_axes2_zz = rrrrs_trace_J_2 - rrrrs_J_2_in_spec2_zz;
         /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real inv_rrrrs_size_t_3 = 1/rrrrs_size_t_3;
         const real inv_rrrrs_rho2_3_t = 1/rrrrs_rho2_3_t;
         const real inv_rrrrs_size = 1/rrrrs_size;
         /* (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real rrrrs_d_G_in_axes4_yy = rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_y;
         /* (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
         const real rrrrs_d_c_in_axes4_yy = -rrrrs_d_G_in_axes4_yy -
             rrrrs_h_4_in_spec4_x*rrrrs_w_4_in_axes4_y;
         /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 2 */
+           degree of freedom of joint 2 */
         const real rrrrs_d_P_2_t = rrrrs_h_3_in_spec3_z*rrrrs_joint3_offset_x;
         /* (h_star) first moment about the platform origin */
         const real rrrrs_h_star_t = rrrrs_link4_mass*rrrrs_platform_point_x;
@@ -972,22 +981,22 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->rrrrs_size[leg] = rrrrs_size;
         model->rrrrs_size_t_3[leg] = rrrrs_size_t_3;
         model->rrrrs_w_4_in_axes4_y[leg] = rrrrs_w_4_in_axes4_y;
-        m_star_rrrrs += rrrrs_link4_mass;
-        h_star_rrrrs_in_platform_x += rrrrs_h_star_t;
-        h_star_rrrrs_in_platform_y += rrrrs_h_star_t_2;
-        h_star_rrrrs_in_platform_z += rrrrs_h_star_t_3;
-        J_star_rrrrs_in_platform_xx += -rrrrs_J_star_t_5;
-        J_star_rrrrs_in_platform_xy += -rrrrs_J_star_t_6;
-        J_star_rrrrs_in_platform_xz += -rrrrs_J_star_t_7;
-        J_star_rrrrs_in_platform_yy += -rrrrs_J_star_t_8;
-        J_star_rrrrs_in_platform_yz += -rrrrs_J_star_t_9;
-        J_star_rrrrs_in_platform_zz += -rrrrs_J_star_t_10;
+        m_star_of_legs += rrrrs_link4_mass;
+        h_star_in_platform_x_of_legs += rrrrs_h_star_t;
+        h_star_in_platform_y_of_legs += rrrrs_h_star_t_2;
+        h_star_in_platform_z_of_legs += rrrrs_h_star_t_3;
+        J_star_in_platform_xx_of_legs += -rrrrs_J_star_t_5;
+        J_star_in_platform_xy_of_legs += -rrrrs_J_star_t_6;
+        J_star_in_platform_xz_of_legs += -rrrrs_J_star_t_7;
+        J_star_in_platform_yy_of_legs += -rrrrs_J_star_t_8;
+        J_star_in_platform_yz_of_legs += -rrrrs_J_star_t_9;
+        J_star_in_platform_zz_of_legs += -rrrrs_J_star_t_10;
         b_c_rrrrs_in_platform_x += rrrrs_platform_point_x;
         b_c_rrrrs_in_platform_y += rrrrs_platform_point_y;
         b_c_rrrrs_in_platform_z += rrrrs_platform_point_z;
         legs_size_rrrrs += rrrrs_size_t_3;
     }
-    for (size_t leg = 0; leg < 2; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         const size_t own = leg;
         const real rrrs_base_point_x = params->rrrs_base_point[own][0];
         const real rrrs_base_point_y = params->rrrs_base_point[own][1];
@@ -1141,7 +1150,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrs_g_in_axes1_z = gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx
             + gravity_z*rrrs_base_frame_zx;
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real inv_rrrs_size_t_3 = 1/rrrs_size_t_3;
         const real inv_rrrs_rho2_2_t = 1/rrrs_rho2_2_t;
         const real inv_rrrs_size = 1/rrrs_size;
@@ -1247,43 +1256,40 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->rrrs_size[leg] = rrrs_size;
         model->rrrs_size_t_3[leg] = rrrs_size_t_3;
         model->rrrs_w_3_in_axes3_y[leg] = rrrs_w_3_in_axes3_y;
-        m_star_rrrs += rrrs_link3_mass;
-        h_star_rrrs_in_platform_x += rrrs_h_star_t;
-        h_star_rrrs_in_platform_y += rrrs_h_star_t_2;
-        h_star_rrrs_in_platform_z += rrrs_h_star_t_3;
-        J_star_rrrs_in_platform_xx += -rrrs_J_star_t_5;
-        J_star_rrrs_in_platform_xy += -rrrs_J_star_t_6;
-        J_star_rrrs_in_platform_xz += -rrrs_J_star_t_7;
-        J_star_rrrs_in_platform_yy += -rrrs_J_star_t_8;
-        J_star_rrrs_in_platform_yz += -rrrs_J_star_t_9;
-        J_star_rrrs_in_platform_zz += -rrrs_J_star_t_10;
+        m_star_of_legs += rrrs_link3_mass;
+        h_star_in_platform_x_of_legs += rrrs_h_star_t;
+        h_star_in_platform_y_of_legs += rrrs_h_star_t_2;
+        h_star_in_platform_z_of_legs += rrrs_h_star_t_3;
+        J_star_in_platform_xx_of_legs += -rrrs_J_star_t_5;
+        J_star_in_platform_xy_of_legs += -rrrs_J_star_t_6;
+        J_star_in_platform_xz_of_legs += -rrrs_J_star_t_7;
+        J_star_in_platform_yy_of_legs += -rrrs_J_star_t_8;
+        J_star_in_platform_yz_of_legs += -rrrs_J_star_t_9;
+        J_star_in_platform_zz_of_legs += -rrrs_J_star_t_10;
         b_c_rrrs_in_platform_x += rrrs_platform_point_x;
         b_c_rrrs_in_platform_y += rrrs_platform_point_y;
         b_c_rrrs_in_platform_z += rrrs_platform_point_z;
         legs_size_rrrs += rrrs_size_t_3;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_rrrrs + m_star_rrrs + platform_mass;
+    const real m_star = m_star_of_legs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = h_star_rrrrs_in_platform_x + h_star_rrrs_in_platform_x +
-        h_star_t;
-    const real h_star_in_platform_y = h_star_rrrrs_in_platform_y + h_star_rrrs_in_platform_y +
-        h_star_t_2;
-    const real h_star_in_platform_z = h_star_rrrrs_in_platform_z + h_star_rrrs_in_platform_z +
-        h_star_t_3;
+    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
+    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
+    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xx = J_star_rrrrs_in_platform_xx +
-        J_star_rrrs_in_platform_xx + platform_inertia_xx - J_star_t_5;
-    const real J_star_in_platform_xy = J_star_rrrrs_in_platform_xy +
-        J_star_rrrs_in_platform_xy + platform_inertia_xy - J_star_t_6;
-    const real J_star_in_platform_xz = J_star_rrrrs_in_platform_xz +
-        J_star_rrrs_in_platform_xz + platform_inertia_xz - J_star_t_7;
-    const real J_star_in_platform_yy = J_star_rrrrs_in_platform_yy +
-        J_star_rrrs_in_platform_yy + platform_inertia_yy - J_star_t_8;
-    const real J_star_in_platform_yz = J_star_rrrrs_in_platform_yz +
-        J_star_rrrs_in_platform_yz + platform_inertia_yz - J_star_t_9;
-    const real J_star_in_platform_zz = J_star_rrrrs_in_platform_zz +
-        J_star_rrrs_in_platform_zz + platform_inertia_zz - J_star_t_10;
+    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
+        J_star_t_5;
+    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
+        J_star_t_6;
+    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
+        J_star_t_7;
+    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
+        J_star_t_8;
+    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
+        J_star_t_9;
+    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
+        J_star_t_10;
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
@@ -1484,9 +1490,10 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 }
 
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
+#define PADDED(n) (((n) + 4)/4*4)
 INLINE size_t stride_of(size_t n, size_t w)
 {
-    return w == 1 ? (n + 4)/4*4 : n + 1;
+    return w == 1 ? PADDED(n) : n + 1;
 }
 
 INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
@@ -1935,7 +1942,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 {
     enum { Q = 3 };
     const real turn[3] = {part*step[Q], part*step[Q + 1], part*step[Q + 2]};
-    for (size_t i = 0; i < 7; ++i) {
+    for (size_t i = 0; i < NV; ++i) {
         const size_t e = i + (i > Q + 2);
         to[e] = X[e] + part*step[i];
     }
@@ -1944,7 +1951,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 1549 mul, 1206 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
     verdict *t)
 {
@@ -2148,7 +2155,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_base_point_z = m->rrrrs_base_point_z[i];
         const real t_z = s[2*w + j];
         const real rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z;
-        const real rrrrs_y_2_extra = X[(7)*w + j];
+        const real rrrrs_y_2_extra = X[7*w + j];
         const real rrrrs_h_3_t_6 = -sine(rrrrs_y_2_extra);
         const real rrrrs_h_3_t_7 = cosine(rrrrs_y_2_extra);
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -2292,7 +2299,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_w_4_in_axes4_x =
             -rrrrs_r_3_in_axes4_x*rrrrs_w_3_in_axes4_x*rrrrs_w_4_in_axes4_y;
         /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real rrrrs_yd_2 = V[(6)*w + j];
+        const real rrrrs_yd_2 = V[6*w + j];
         const real rrrrs_S_dot_rest_x = rrrrs_S_dot_x -
             rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
             axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y);
@@ -2720,7 +2727,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             rrrrs_w_1_in_axes4_z*(rrrrs_J_1_in_spec1_xx + rrrrs_Jc_2_in_axes1_zz) -
             rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x;
         /* (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real rrrrs_d_G_in_axes4_yz = rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_y;
         const real rrrrs_d_G_in_axes4_xx = rrrrs_d_Gamma_3_in_axes4_x*rrrrs_w_3_in_axes4_x +
             rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x;
@@ -2731,10 +2738,10 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_7 +
             rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_6);
         /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y;
         /* (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y;
         const real rrrrs_G_o_in_axes4_x =
             -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x -
@@ -2808,7 +2815,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_U_z = -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x -
             axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y - axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z;
         /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 2 */
+           degree of freedom of joint 2 */
         const real rrrrs_d_P_2_in_axes4_x = rrrrs_d_Gamma_2_in_axes4_x +
             rrrrs_d_G_in_axes4_xx*rrrrs_r_2_in_axes4_y -
             rrrrs_d_Gamma_4_in_axes4_x*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y;
@@ -2831,13 +2838,13 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             axis_y_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_y +
             axis_z_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_z;
         /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 2 */
+           extra degree of freedom of joint 2 */
         const real rrrrs_dy_2_P_2_t = rrrrs_dy_2_G_in_axes4_y*rrrrs_r_2_in_axes4_x +
             rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*rrrrs_r_3_in_axes4_x
             - rrrrs_dy_2_Gamma_3);
         const real rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t;
         /* (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 2 */
+           extra degree of freedom of joint 2 */
         const real rrrrs_P_2_o_t = rrrrs_G_o_in_axes4_x*rrrrs_r_2_in_axes4_y -
             rrrrs_G_o_in_axes4_y*rrrrs_r_2_in_axes4_x;
         const real rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t;
@@ -2878,42 +2885,42 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z;
         const real rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + rrrrs_Q_xx : rrrrs_Q_xx;  /* M_tt_rrrrs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrrs_Q_xy : rrrrs_Q_xy;  /* M_tt_rrrrs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrrs_Q_xz : rrrrs_Q_xz;  /* M_tt_rrrrs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrrs_Q_yy : rrrrs_Q_yy;  /* M_tt_rrrrs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrrs_Q_yz : rrrrs_Q_yz;  /* M_tt_rrrrs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrrs_Q_zz : rrrrs_Q_zz;  /* M_tt_rrrrs_zz */
+        gather(&terms[0*count + k], add, rrrrs_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, rrrrs_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, rrrrs_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, rrrrs_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, rrrrs_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, rrrrs_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + rrrrs_M_ta_t_3 : rrrrs_M_ta_t_3;  /* M_ta_rrrrs_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + -rrrrs_M_ta_t_4 : -rrrrs_M_ta_t_4;  /* M_ta_rrrrs_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + rrrrs_M_ta_t_5 : rrrrs_M_ta_t_5;  /* M_ta_rrrrs_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + rrrrs_M_ta_t_6 : rrrrs_M_ta_t_6;  /* M_ta_rrrrs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + -rrrrs_M_ta_t_8 : -rrrrs_M_ta_t_8;  /* M_ta_rrrrs_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + rrrrs_M_ta_t_9 : rrrrs_M_ta_t_9;  /* M_ta_rrrrs_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + rrrrs_M_ta_t_10 : rrrrs_M_ta_t_10;  /* M_ta_rrrrs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + rrrrs_M_ta_t_11 : rrrrs_M_ta_t_11;  /* M_ta_rrrrs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + -rrrrs_M_ta_t_12 : -rrrrs_M_ta_t_12;  /* M_ta_rrrrs_zz */
+        gather(&terms[6*count + k], add, rrrrs_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, -rrrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, rrrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, rrrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, -rrrrs_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, rrrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, rrrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, rrrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, -rrrrs_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + rrrrs_M_aa_t : rrrrs_M_aa_t;  /* M_aa_rrrrs_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + rrrrs_M_aa_t_2 : rrrrs_M_aa_t_2;  /* M_aa_rrrrs_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + rrrrs_M_aa_t_3 : rrrrs_M_aa_t_3;  /* M_aa_t */
-        terms[18*count + k] = add ? terms[18*count + k] + rrrrs_M_aa_t_4 : rrrrs_M_aa_t_4;  /* M_aa_t_2 */
-        terms[19*count + k] = add ? terms[19*count + k] + rrrrs_M_aa_t_5 : rrrrs_M_aa_t_5;  /* M_aa_rrrrs_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + rrrrs_M_aa_t_6 : rrrrs_M_aa_t_6;  /* M_aa_rrrrs_zz */
+        gather(&terms[15*count + k], add, rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, rrrrs_M_aa_t_3);  /* M_aa_t */
+        gather(&terms[18*count + k], add, rrrrs_M_aa_t_4);  /* M_aa_t_2 */
+        gather(&terms[19*count + k], add, rrrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[21*count + k] = add ? terms[21*count + k] + rrrrs_U_x : rrrrs_U_x;  /* Z_t_rrrrs_x */
-        terms[22*count + k] = add ? terms[22*count + k] + rrrrs_U_y : rrrrs_U_y;  /* Z_t_rrrrs_y */
-        terms[23*count + k] = add ? terms[23*count + k] + rrrrs_U_z : rrrrs_U_z;  /* Z_t_rrrrs_z */
+        gather(&terms[21*count + k], add, rrrrs_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[22*count + k], add, rrrrs_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[23*count + k], add, rrrrs_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[24*count + k] = add ? terms[24*count + k] + rrrrs_Z_a_t : rrrrs_Z_a_t;  /* Z_a_rrrrs_x */
-        terms[25*count + k] = add ? terms[25*count + k] + rrrrs_Z_a_t_2 : rrrrs_Z_a_t_2;  /* Z_a_rrrrs_y */
-        terms[26*count + k] = add ? terms[26*count + k] + rrrrs_Z_a_t_3 : rrrrs_Z_a_t_3;  /* Z_a_rrrrs_z */
+        gather(&terms[24*count + k], add, rrrrs_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[25*count + k], add, rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[26*count + k], add, rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 2 */
+           extra degree of freedom of joint 2 */
         o[0*count + k] = rrrrs_P_2_o;
         /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 2 */
+           degree of freedom of joint 2 */
         o[1*count + k] = rrrrs_d_P_2_x;
         o[2*count + k] = rrrrs_d_P_2_x;
         o[3*count + k] = rrrrs_d_P_2_y;
@@ -2928,7 +2935,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         o[11*count + k] = rrrrs_M_ya_2_z;
         o[12*count + k] = rrrrs_M_ya_2_z;
         /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 2 */
+           extra degree of freedom of joint 2 */
         o[13*count + k] = rrrrs_dy_2_P_2;
         /* (rrrrs-w_1) reciprocal vector 1 */
         o[14*count + k] = rrrrs_w_1_x;
@@ -2970,34 +2977,34 @@ INLINE void dynamics_place_rrrrs(size_t w, size_t count, const real *o, size_t f
     real *Z, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Z[(6)*w + k] = o[0*count + first + k];
-        M[(42)*w + k] = o[1*count + first + k];
-        M[(6)*w + k] = o[2*count + first + k];
-        M[(43)*w + k] = o[3*count + first + k];
-        M[(13)*w + k] = o[4*count + first + k];
-        M[(44)*w + k] = o[5*count + first + k];
-        M[(20)*w + k] = o[6*count + first + k];
-        M[(45)*w + k] = o[7*count + first + k];
-        M[(27)*w + k] = o[8*count + first + k];
-        M[(46)*w + k] = o[9*count + first + k];
-        M[(34)*w + k] = o[10*count + first + k];
-        M[(47)*w + k] = o[11*count + first + k];
-        M[(41)*w + k] = o[12*count + first + k];
-        M[(48)*w + k] = o[13*count + first + k];
-        H[(0)*w + k] = o[14*count + first + k];
-        H[(7)*w + k] = o[15*count + first + k];
-        H[(14)*w + k] = o[16*count + first + k];
-        H[(21)*w + k] = o[17*count + first + k];
-        H[(28)*w + k] = o[18*count + first + k];
-        H[(35)*w + k] = o[19*count + first + k];
-        H[(43)*w + k] = o[20*count + first + k];
-        H[(2)*w + k] = o[21*count + first + k];
-        H[(9)*w + k] = o[22*count + first + k];
-        H[(16)*w + k] = o[23*count + first + k];
-        H[(23)*w + k] = o[24*count + first + k];
-        H[(30)*w + k] = o[25*count + first + k];
-        H[(37)*w + k] = o[26*count + first + k];
-        H[(44)*w + k] = o[27*count + first + k];
+        Z[6*w + k] = o[0*count + first + k];
+        M[6*NV*w + k] = o[1*count + first + k];
+        M[(0*NV + 6)*w + k] = o[2*count + first + k];
+        M[(6*NV + 1)*w + k] = o[3*count + first + k];
+        M[(NV + 6)*w + k] = o[4*count + first + k];
+        M[(6*NV + 2)*w + k] = o[5*count + first + k];
+        M[(2*NV + 6)*w + k] = o[6*count + first + k];
+        M[(6*NV + 3)*w + k] = o[7*count + first + k];
+        M[(3*NV + 6)*w + k] = o[8*count + first + k];
+        M[(6*NV + 4)*w + k] = o[9*count + first + k];
+        M[(4*NV + 6)*w + k] = o[10*count + first + k];
+        M[(6*NV + 5)*w + k] = o[11*count + first + k];
+        M[(5*NV + 6)*w + k] = o[12*count + first + k];
+        M[(6*NV + 6)*w + k] = o[13*count + first + k];
+        H[0*NU*w + k] = o[14*count + first + k];
+        H[NU*w + k] = o[15*count + first + k];
+        H[2*NU*w + k] = o[16*count + first + k];
+        H[3*NU*w + k] = o[17*count + first + k];
+        H[4*NU*w + k] = o[18*count + first + k];
+        H[5*NU*w + k] = o[19*count + first + k];
+        H[(6*NU + 1)*w + k] = o[20*count + first + k];
+        H[(0*NU + 2)*w + k] = o[21*count + first + k];
+        H[(NU + 2)*w + k] = o[22*count + first + k];
+        H[(2*NU + 2)*w + k] = o[23*count + first + k];
+        H[(3*NU + 2)*w + k] = o[24*count + first + k];
+        H[(4*NU + 2)*w + k] = o[25*count + first + k];
+        H[(5*NU + 2)*w + k] = o[26*count + first + k];
+        H[(6*NU + 2)*w + k] = o[27*count + first + k];
         t->unreachable[k] += o[28*count + first + k];
         t->singular[k] += o[29*count + first + k];
         t->total[k] += o[30*count + first + k];
@@ -3408,14 +3415,14 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
             rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx + rrrs_Jc_2_in_axes1_zz) -
             rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x;
         /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real rrrs_d_G_in_axes3_xz = rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
             rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
             rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t) +
             rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
             rrrs_J_3_in_spec3_yz*rrrs_s_3_t));
         /* (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
         /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
@@ -3517,37 +3524,37 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z;
         const real rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_Q_xx : rrrs_Q_xx;  /* M_tt_rrrs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrs_Q_xy : rrrs_Q_xy;  /* M_tt_rrrs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrs_Q_xz : rrrs_Q_xz;  /* M_tt_rrrs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrs_Q_yy : rrrs_Q_yy;  /* M_tt_rrrs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrs_Q_yz : rrrs_Q_yz;  /* M_tt_rrrs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrs_Q_zz : rrrs_Q_zz;  /* M_tt_rrrs_zz */
+        gather(&terms[0*count + k], add, rrrs_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, rrrs_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, rrrs_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, rrrs_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, rrrs_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, rrrs_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + rrrs_M_ta_t_3 : rrrs_M_ta_t_3;  /* M_ta_rrrs_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + rrrs_M_ta_t_4 : rrrs_M_ta_t_4;  /* M_ta_rrrs_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + rrrs_M_ta_t_5 : rrrs_M_ta_t_5;  /* M_ta_rrrs_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + rrrs_M_ta_t_6 : rrrs_M_ta_t_6;  /* M_ta_rrrs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + rrrs_M_ta_t_8 : rrrs_M_ta_t_8;  /* M_ta_rrrs_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + rrrs_M_ta_t_9 : rrrs_M_ta_t_9;  /* M_ta_rrrs_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + rrrs_M_ta_t_10 : rrrs_M_ta_t_10;  /* M_ta_rrrs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + rrrs_M_ta_t_11 : rrrs_M_ta_t_11;  /* M_ta_rrrs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + rrrs_M_ta_t_12 : rrrs_M_ta_t_12;  /* M_ta_rrrs_zz */
+        gather(&terms[6*count + k], add, rrrs_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, rrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, rrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, rrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, rrrs_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, rrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, rrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, rrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, rrrs_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + rrrs_M_aa_t : rrrs_M_aa_t;  /* M_aa_rrrs_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + rrrs_M_aa_t_2 : rrrs_M_aa_t_2;  /* M_aa_rrrs_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + rrrs_M_aa_t_3 : rrrs_M_aa_t_3;  /* M_aa_rrrs_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + rrrs_M_aa_t_4 : rrrs_M_aa_t_4;  /* M_aa_rrrs_yy */
-        terms[19*count + k] = add ? terms[19*count + k] + rrrs_M_aa_t_5 : rrrs_M_aa_t_5;  /* M_aa_rrrs_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + rrrs_M_aa_t_6 : rrrs_M_aa_t_6;  /* M_aa_rrrs_zz */
+        gather(&terms[15*count + k], add, rrrs_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[27*count + k], add, rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[28*count + k], add, rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[21*count + k] = add ? terms[21*count + k] + rrrs_U_x : rrrs_U_x;  /* Z_t_rrrs_x */
-        terms[22*count + k] = add ? terms[22*count + k] + rrrs_U_y : rrrs_U_y;  /* Z_t_rrrs_y */
-        terms[23*count + k] = add ? terms[23*count + k] + rrrs_U_z : rrrs_U_z;  /* Z_t_rrrs_z */
+        gather(&terms[21*count + k], add, rrrs_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[22*count + k], add, rrrs_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[23*count + k], add, rrrs_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[24*count + k] = add ? terms[24*count + k] + rrrs_Z_a_t : rrrs_Z_a_t;  /* Z_a_rrrs_x */
-        terms[25*count + k] = add ? terms[25*count + k] + rrrs_Z_a_t_2 : rrrs_Z_a_t_2;  /* Z_a_rrrs_y */
-        terms[26*count + k] = add ? terms[26*count + k] + rrrs_Z_a_t_3 : rrrs_Z_a_t_3;  /* Z_a_rrrs_z */
+        gather(&terms[24*count + k], add, rrrs_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[25*count + k], add, rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[26*count + k], add, rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (rrrs-w_1) reciprocal vector 1 */
         o[0*count + k] = rrrs_w_1_x;
         o[1*count + k] = rrrs_w_1_y;
@@ -3582,18 +3589,18 @@ INLINE void dynamics_place_rrrs(size_t w, size_t count, const real *o, size_t le
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(3 + 2*leg)*w + k] = o[0*count + first + k];
-        H[(10 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(17 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(24 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(31 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(38 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(4 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(11 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(18 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(25 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(32 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(39 + 2*leg)*w + k] = o[11*count + first + k];
+        H[(0*NU + 3 + 2*leg)*w + k] = o[0*count + first + k];
+        H[(NU + 3 + 2*leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 3 + 2*leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + 3 + 2*leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + 3 + 2*leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + 3 + 2*leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + 4 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(NU + 4 + 2*leg)*w + k] = o[7*count + first + k];
+        H[(2*NU + 4 + 2*leg)*w + k] = o[8*count + first + k];
+        H[(3*NU + 4 + 2*leg)*w + k] = o[9*count + first + k];
+        H[(4*NU + 4 + 2*leg)*w + k] = o[10*count + first + k];
+        H[(5*NU + 4 + 2*leg)*w + k] = o[11*count + first + k];
         t->unreachable[k] += o[12*count + first + k];
         t->singular[k] += o[13*count + first + k];
         t->total[k] += o[14*count + first + k];
@@ -3605,146 +3612,115 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_rrrrs_xx = sums[0*w + k];
-        const real M_tt_rrrs_xx = sums[27*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_rrrrs_xx + M_tt_rrrs_xx + m_star;
-        const real M_tt_rrrrs_xy = sums[1*w + k];
-        const real M_tt_rrrs_xy = sums[28*w + k];
-        const real M_tt_xy = M_tt_rrrrs_xy + M_tt_rrrs_xy;
-        const real M_tt_rrrrs_xz = sums[2*w + k];
-        const real M_tt_rrrs_xz = sums[29*w + k];
-        const real M_tt_xz = M_tt_rrrrs_xz + M_tt_rrrs_xz;
-        const real M_tt_rrrrs_yy = sums[3*w + k];
-        const real M_tt_rrrs_yy = sums[30*w + k];
-        const real M_tt_yy = M_tt_rrrrs_yy + M_tt_rrrs_yy + m_star;
-        const real M_tt_rrrrs_yz = sums[4*w + k];
-        const real M_tt_rrrs_yz = sums[31*w + k];
-        const real M_tt_yz = M_tt_rrrrs_yz + M_tt_rrrs_yz;
-        const real M_tt_rrrrs_zz = sums[5*w + k];
-        const real M_tt_rrrs_zz = sums[32*w + k];
-        const real M_tt_zz = M_tt_rrrrs_zz + M_tt_rrrs_zz + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_rrrrs_xx = sums[6*w + k];
-        const real M_ta_rrrs_xx = sums[33*w + k];
-        const real M_ta_xx = M_ta_rrrrs_xx + M_ta_rrrs_xx;
-        const real M_ta_rrrrs_xy = sums[7*w + k];
-        const real M_ta_rrrs_xy = sums[34*w + k];
+        const real M_ta_xy_of_legs = sums[7*w + k];
         const real h_star_z = s[20*w + k];
-        const real M_ta_xy = M_ta_rrrrs_xy + M_ta_rrrs_xy + h_star_z;
-        const real M_ta_rrrrs_xz = sums[8*w + k];
-        const real M_ta_rrrs_xz = sums[35*w + k];
+        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+        const real M_ta_xz_of_legs = sums[8*w + k];
         const real h_star_y = s[19*w + k];
-        const real M_ta_xz = M_ta_rrrrs_xz + M_ta_rrrs_xz - h_star_y;
-        const real M_ta_rrrrs_yx = sums[9*w + k];
-        const real M_ta_rrrs_yx = sums[36*w + k];
-        const real M_ta_yx = M_ta_rrrrs_yx + M_ta_rrrs_yx - h_star_z;
-        const real M_ta_rrrrs_yy = sums[10*w + k];
-        const real M_ta_rrrs_yy = sums[37*w + k];
-        const real M_ta_yy = M_ta_rrrrs_yy + M_ta_rrrs_yy;
-        const real M_ta_rrrrs_yz = sums[11*w + k];
-        const real M_ta_rrrs_yz = sums[38*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yx_of_legs = sums[9*w + k];
+        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+        const real M_ta_yz_of_legs = sums[11*w + k];
         const real h_star_x = s[18*w + k];
-        const real M_ta_yz = M_ta_rrrrs_yz + M_ta_rrrs_yz + h_star_x;
-        const real M_ta_rrrrs_zx = sums[12*w + k];
-        const real M_ta_rrrs_zx = sums[39*w + k];
-        const real M_ta_zx = M_ta_rrrrs_zx + M_ta_rrrs_zx + h_star_y;
-        const real M_ta_rrrrs_zy = sums[13*w + k];
-        const real M_ta_rrrs_zy = sums[40*w + k];
-        const real M_ta_zy = M_ta_rrrrs_zy + M_ta_rrrs_zy - h_star_x;
-        const real M_ta_rrrrs_zz = sums[14*w + k];
-        const real M_ta_rrrs_zz = sums[41*w + k];
-        const real M_ta_zz = M_ta_rrrrs_zz + M_ta_rrrs_zz;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+        const real M_ta_zx_of_legs = sums[12*w + k];
+        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+        const real M_ta_zy_of_legs = sums[13*w + k];
+        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[21*w + k];
-        const real M_aa_rrrrs_xx = sums[15*w + k];
-        const real M_aa_rrrs_xx = sums[42*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_rrrrs_xx + M_aa_rrrs_xx;
+        const real M_aa_xx_of_legs = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[22*w + k];
-        const real M_aa_rrrrs_xy = sums[16*w + k];
-        const real M_aa_rrrs_xy = sums[43*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_rrrrs_xy + M_aa_rrrs_xy;
+        const real M_aa_xy_of_legs = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[23*w + k];
-        const real M_aa_rrrs_xz = sums[44*w + k];
         const real M_aa_t = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_rrrs_xz - M_aa_t;
+        const real M_aa_xz_of_legs = sums[27*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs - M_aa_t;
         const real J_star_yy = s[24*w + k];
-        const real M_aa_rrrs_yy = sums[45*w + k];
         const real M_aa_t_2 = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_rrrs_yy - M_aa_t_2;
+        const real M_aa_yy_of_legs = sums[28*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs - M_aa_t_2;
         const real J_star_yz = s[25*w + k];
-        const real M_aa_rrrrs_yz = sums[19*w + k];
-        const real M_aa_rrrs_yz = sums[46*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_rrrrs_yz + M_aa_rrrs_yz;
+        const real M_aa_yz_of_legs = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[26*w + k];
-        const real M_aa_rrrrs_zz = sums[20*w + k];
-        const real M_aa_rrrs_zz = sums[47*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_rrrrs_zz + M_aa_rrrs_zz;
+        const real M_aa_zz_of_legs = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real Z_t_rrrrs_x = sums[21*w + k];
-        const real Z_t_rrrs_x = sums[48*w + k];
-        const real Z_t_x = Z_p_x + Z_t_rrrrs_x + Z_t_rrrs_x;
+        const real Z_t_x_of_legs = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[28*w + k];
-        const real Z_t_rrrrs_y = sums[22*w + k];
-        const real Z_t_rrrs_y = sums[49*w + k];
-        const real Z_t_y = Z_p_y + Z_t_rrrrs_y + Z_t_rrrs_y;
+        const real Z_t_y_of_legs = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = s[29*w + k];
-        const real Z_t_rrrrs_z = sums[23*w + k];
-        const real Z_t_rrrs_z = sums[50*w + k];
-        const real Z_t_z = Z_p_z + Z_t_rrrrs_z + Z_t_rrrs_z;
+        const real Z_t_z_of_legs = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_rrrrs_x = sums[24*w + k];
-        const real Z_a_rrrs_x = sums[51*w + k];
+        const real Z_a_x_of_legs = sums[24*w + k];
         const real Z_q_x = s[30*w + k];
-        const real Z_a_x = Z_a_rrrrs_x + Z_a_rrrs_x + Z_q_x;
-        const real Z_a_rrrrs_y = sums[25*w + k];
-        const real Z_a_rrrs_y = sums[52*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[25*w + k];
         const real Z_q_y = s[31*w + k];
-        const real Z_a_y = Z_a_rrrrs_y + Z_a_rrrs_y + Z_q_y;
-        const real Z_a_rrrrs_z = sums[26*w + k];
-        const real Z_a_rrrs_z = sums[53*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[26*w + k];
         const real Z_q_z = s[32*w + k];
-        const real Z_a_z = Z_a_rrrrs_z + Z_a_rrrs_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = M_tt_xy;
-        M[7*w + k] = M_tt_xy;
-        M[2*w + k] = M_tt_xz;
-        M[14*w + k] = M_tt_xz;
-        M[8*w + k] = M_tt_yy;
-        M[9*w + k] = M_tt_yz;
-        M[15*w + k] = M_tt_yz;
-        M[16*w + k] = M_tt_zz;
+        M[0*NV*w + k] = M_tt_xx;
+        const real M_tt_xy = sums[1*w + k];
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*NV*w + k] = M_tt_xz;
+        M[(NV + 1)*w + k] = M_tt_yy;
+        const real M_tt_yz = sums[4*w + k];
+        M[(NV + 2)*w + k] = M_tt_yz;
+        M[(2*NV + 1)*w + k] = M_tt_yz;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
-        M[3*w + k] = M_ta_xx;
-        M[21*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[28*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[35*w + k] = M_ta_xz;
-        M[10*w + k] = M_ta_yx;
-        M[22*w + k] = M_ta_yx;
-        M[11*w + k] = M_ta_yy;
-        M[29*w + k] = M_ta_yy;
-        M[12*w + k] = M_ta_yz;
-        M[36*w + k] = M_ta_yz;
-        M[17*w + k] = M_ta_zx;
-        M[23*w + k] = M_ta_zx;
-        M[18*w + k] = M_ta_zy;
-        M[30*w + k] = M_ta_zy;
-        M[19*w + k] = M_ta_zz;
-        M[37*w + k] = M_ta_zz;
+        const real M_ta_xx = sums[6*w + k];
+        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*NV*w + k] = M_ta_xx;
+        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*NV*w + k] = M_ta_xy;
+        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*NV*w + k] = M_ta_xz;
+        M[(NV + 3)*w + k] = M_ta_yx;
+        M[(3*NV + 1)*w + k] = M_ta_yx;
+        const real M_ta_yy = sums[10*w + k];
+        M[(NV + 4)*w + k] = M_ta_yy;
+        M[(4*NV + 1)*w + k] = M_ta_yy;
+        M[(NV + 5)*w + k] = M_ta_yz;
+        M[(5*NV + 1)*w + k] = M_ta_yz;
+        M[(2*NV + 3)*w + k] = M_ta_zx;
+        M[(3*NV + 2)*w + k] = M_ta_zx;
+        M[(2*NV + 4)*w + k] = M_ta_zy;
+        M[(4*NV + 2)*w + k] = M_ta_zy;
+        const real M_ta_zz = sums[14*w + k];
+        M[(2*NV + 5)*w + k] = M_ta_zz;
+        M[(5*NV + 2)*w + k] = M_ta_zz;
         /* (M_aa) rotational block of M */
-        M[24*w + k] = M_aa_xx;
-        M[25*w + k] = M_aa_xy;
-        M[31*w + k] = M_aa_xy;
-        M[26*w + k] = M_aa_xz;
-        M[38*w + k] = M_aa_xz;
-        M[32*w + k] = M_aa_yy;
-        M[33*w + k] = M_aa_yz;
-        M[39*w + k] = M_aa_yz;
-        M[40*w + k] = M_aa_zz;
+        M[(3*NV + 3)*w + k] = M_aa_xx;
+        M[(3*NV + 4)*w + k] = M_aa_xy;
+        M[(4*NV + 3)*w + k] = M_aa_xy;
+        M[(3*NV + 5)*w + k] = M_aa_xz;
+        M[(5*NV + 3)*w + k] = M_aa_xz;
+        M[(4*NV + 4)*w + k] = M_aa_yy;
+        M[(4*NV + 5)*w + k] = M_aa_yz;
+        M[(5*NV + 4)*w + k] = M_aa_yz;
+        M[(5*NV + 5)*w + k] = M_aa_zz;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -3763,23 +3739,27 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[33] = {0}, sums[54] = {0}, terms_rrrrs[27*LEGS(1)] = {0}, o_rrrrs[31*LEGS(1)] = {0},
-        terms_rrrs[27*LEGS(2)] = {0}, o_rrrs[15*LEGS(2)] = {0};
-    clear(H, 49);
+    real s[33] = {0};
+    real sums[29] = {0};
+    real terms_rrrrs[29*LEGS(LEGS_OF_rrrrs)] = {0};
+    real o_rrrrs[31*LEGS(LEGS_OF_rrrrs)] = {0};
+    real terms_rrrs[29*LEGS(LEGS_OF_rrrs)] = {0};
+    real o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
+    clear(H, NV*NU);
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(1), 0, X, V, terms_rrrrs, o_rrrrs);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        dynamics_place_rrrrs(1, LEGS(1), o_rrrrs, leg, M, Z, H, t);
+    dynamics_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, V, terms_rrrrs, o_rrrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
+        dynamics_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, M, Z, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
-        sums[n] = total(terms_rrrrs + n*LEGS(1), 1);
+    for (size_t n = 0; n < 29; ++n) {
+        sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    dynamics_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        dynamics_place_rrrs(1, LEGS(2), o_rrrs, leg, leg, H, t);
+    dynamics_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        dynamics_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
-        sums[27 + n] = total(terms_rrrs + n*LEGS(2), 2);
+    for (size_t n = 0; n < 29; ++n) {
+        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -3787,23 +3767,25 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[33*LANES], sums[54*LANES], o_rrrrs[31*LANES], o_rrrs[15*LANES];
-    clear(H, 49*LANES);
+    real s[33*LANES];
+    real sums[29*LANES];
+    real o_rrrrs[31*LANES];
+    real o_rrrs[15*LANES];
+    clear(H, NV*NU*LANES);
     dynamics_before(m, LANES, X, V, s, t);
-    clear(sums, 27*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    clear(sums, 29*LANES);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
         dynamics_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrrrs);
         dynamics_place_rrrrs(LANES, LANES, o_rrrrs, 0, M, Z, H, t);
     }
-    clear(sums + 27*LANES, 27*LANES);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        dynamics_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums + 27*LANES, o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        dynamics_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrrs);
         dynamics_place_rrrs(LANES, LANES, o_rrrs, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
-/* ---- M: 755 mul, 578 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3938,7 +3920,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_base_point_z = m->rrrrs_base_point_z[i];
         const real t_z = s[2*w + j];
         const real rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z;
-        const real rrrrs_y_2_extra = X[(7)*w + j];
+        const real rrrrs_y_2_extra = X[7*w + j];
         const real rrrrs_h_3_t_6 = -sine(rrrrs_y_2_extra);
         const real rrrrs_h_3_t_7 = cosine(rrrrs_y_2_extra);
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -4146,7 +4128,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             rrrrs_w_1_in_axes4_z*(rrrrs_J_1_in_spec1_xx + rrrrs_Jc_2_in_axes1_zz) -
             rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x;
         /* (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real rrrrs_d_G_in_axes4_yz = rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_y;
         const real rrrrs_d_G_in_axes4_xx = rrrrs_d_Gamma_3_in_axes4_x*rrrrs_w_3_in_axes4_x +
             rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x;
@@ -4157,7 +4139,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_7 +
             rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_6);
         /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y;
         /* (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
@@ -4234,7 +4216,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             axis_z_rrrrs_axes4_z*rrrrs_Q_t_16;
         const real rrrrs_Q_zz = -2*rrrrs_Q_t_19 - rrrrs_d_c_in_axes4_xx;
         /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 2 */
+           degree of freedom of joint 2 */
         const real rrrrs_d_P_2_in_axes4_x = rrrrs_d_Gamma_2_in_axes4_x +
             rrrrs_d_G_in_axes4_xx*rrrrs_r_2_in_axes4_y -
             rrrrs_d_Gamma_4_in_axes4_x*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y;
@@ -4259,7 +4241,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             axis_y_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_y +
             axis_z_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_z;
         /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 2 */
+           extra degree of freedom of joint 2 */
         const real rrrrs_dy_2_P_2_t = rrrrs_dy_2_G_in_axes4_y*rrrrs_r_2_in_axes4_x +
             rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*rrrrs_r_3_in_axes4_x
             - rrrrs_dy_2_Gamma_3);
@@ -4289,31 +4271,31 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_M_ya_2_y = rrrrs_d_P_2_x*rrrrs_q_z - rrrrs_d_P_2_z*rrrrs_q_x;
         const real rrrrs_M_ya_2_z = rrrrs_d_P_2_y*rrrrs_q_x - rrrrs_d_P_2_x*rrrrs_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + rrrrs_Q_xx : rrrrs_Q_xx;  /* M_tt_rrrrs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrrs_Q_xy : rrrrs_Q_xy;  /* M_tt_rrrrs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrrs_Q_xz : rrrrs_Q_xz;  /* M_tt_rrrrs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrrs_Q_yy : rrrrs_Q_yy;  /* M_tt_rrrrs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrrs_Q_yz : rrrrs_Q_yz;  /* M_tt_rrrrs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrrs_Q_zz : rrrrs_Q_zz;  /* M_tt_rrrrs_zz */
+        gather(&terms[0*count + k], add, rrrrs_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, rrrrs_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, rrrrs_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, rrrrs_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, rrrrs_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, rrrrs_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + rrrrs_M_ta_t_3 : rrrrs_M_ta_t_3;  /* M_ta_rrrrs_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + -rrrrs_M_ta_t_4 : -rrrrs_M_ta_t_4;  /* M_ta_rrrrs_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + rrrrs_M_ta_t_5 : rrrrs_M_ta_t_5;  /* M_ta_rrrrs_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + rrrrs_M_ta_t_6 : rrrrs_M_ta_t_6;  /* M_ta_rrrrs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + -rrrrs_M_ta_t_8 : -rrrrs_M_ta_t_8;  /* M_ta_rrrrs_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + rrrrs_M_ta_t_9 : rrrrs_M_ta_t_9;  /* M_ta_rrrrs_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + rrrrs_M_ta_t_10 : rrrrs_M_ta_t_10;  /* M_ta_rrrrs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + rrrrs_M_ta_t_11 : rrrrs_M_ta_t_11;  /* M_ta_rrrrs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + -rrrrs_M_ta_t_12 : -rrrrs_M_ta_t_12;  /* M_ta_rrrrs_zz */
+        gather(&terms[6*count + k], add, rrrrs_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, -rrrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, rrrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, rrrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, -rrrrs_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, rrrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, rrrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, rrrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, -rrrrs_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + rrrrs_M_aa_t : rrrrs_M_aa_t;  /* M_aa_rrrrs_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + rrrrs_M_aa_t_2 : rrrrs_M_aa_t_2;  /* M_aa_rrrrs_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + rrrrs_M_aa_t_3 : rrrrs_M_aa_t_3;  /* M_aa_t */
-        terms[18*count + k] = add ? terms[18*count + k] + rrrrs_M_aa_t_4 : rrrrs_M_aa_t_4;  /* M_aa_t_2 */
-        terms[19*count + k] = add ? terms[19*count + k] + rrrrs_M_aa_t_5 : rrrrs_M_aa_t_5;  /* M_aa_rrrrs_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + rrrrs_M_aa_t_6 : rrrrs_M_aa_t_6;  /* M_aa_rrrrs_zz */
+        gather(&terms[15*count + k], add, rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, rrrrs_M_aa_t_3);  /* M_aa_t */
+        gather(&terms[18*count + k], add, rrrrs_M_aa_t_4);  /* M_aa_t_2 */
+        gather(&terms[19*count + k], add, rrrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 2 */
+           degree of freedom of joint 2 */
         o[0*count + k] = rrrrs_d_P_2_x;
         o[1*count + k] = rrrrs_d_P_2_x;
         o[2*count + k] = rrrrs_d_P_2_y;
@@ -4328,7 +4310,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         o[10*count + k] = rrrrs_M_ya_2_z;
         o[11*count + k] = rrrrs_M_ya_2_z;
         /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 2 */
+           extra degree of freedom of joint 2 */
         o[12*count + k] = rrrrs_dy_2_P_2;
         o[15*count + k] = (rrrrs_d_P_2_x + (rrrrs_d_P_2_y + rrrrs_d_P_2_z)) + ((rrrrs_M_ya_2_x +
             rrrrs_M_ya_2_y) + (rrrrs_M_ya_2_z + rrrrs_dy_2_P_2));
@@ -4347,19 +4329,19 @@ INLINE void M_place_rrrrs(size_t w, size_t count, const real *o, size_t first, r
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        M[(42)*w + k] = o[0*count + first + k];
-        M[(6)*w + k] = o[1*count + first + k];
-        M[(43)*w + k] = o[2*count + first + k];
-        M[(13)*w + k] = o[3*count + first + k];
-        M[(44)*w + k] = o[4*count + first + k];
-        M[(20)*w + k] = o[5*count + first + k];
-        M[(45)*w + k] = o[6*count + first + k];
-        M[(27)*w + k] = o[7*count + first + k];
-        M[(46)*w + k] = o[8*count + first + k];
-        M[(34)*w + k] = o[9*count + first + k];
-        M[(47)*w + k] = o[10*count + first + k];
-        M[(41)*w + k] = o[11*count + first + k];
-        M[(48)*w + k] = o[12*count + first + k];
+        M[6*NV*w + k] = o[0*count + first + k];
+        M[(0*NV + 6)*w + k] = o[1*count + first + k];
+        M[(6*NV + 1)*w + k] = o[2*count + first + k];
+        M[(NV + 6)*w + k] = o[3*count + first + k];
+        M[(6*NV + 2)*w + k] = o[4*count + first + k];
+        M[(2*NV + 6)*w + k] = o[5*count + first + k];
+        M[(6*NV + 3)*w + k] = o[6*count + first + k];
+        M[(3*NV + 6)*w + k] = o[7*count + first + k];
+        M[(6*NV + 4)*w + k] = o[8*count + first + k];
+        M[(4*NV + 6)*w + k] = o[9*count + first + k];
+        M[(6*NV + 5)*w + k] = o[10*count + first + k];
+        M[(5*NV + 6)*w + k] = o[11*count + first + k];
+        M[(6*NV + 6)*w + k] = o[12*count + first + k];
         t->unreachable[k] += o[13*count + first + k];
         t->singular[k] += o[14*count + first + k];
         t->total[k] += o[15*count + first + k];
@@ -4537,7 +4519,7 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
             rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx + rrrs_Jc_2_in_axes1_zz) -
             rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x;
         /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
         const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
         const real rrrs_d_G_in_axes3_xz = rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
@@ -4634,29 +4616,29 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x;
         const real rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_Q_xx : rrrs_Q_xx;  /* M_tt_rrrs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrs_Q_xy : rrrs_Q_xy;  /* M_tt_rrrs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrs_Q_xz : rrrs_Q_xz;  /* M_tt_rrrs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrs_Q_yy : rrrs_Q_yy;  /* M_tt_rrrs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrs_Q_yz : rrrs_Q_yz;  /* M_tt_rrrs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrs_Q_zz : rrrs_Q_zz;  /* M_tt_rrrs_zz */
+        gather(&terms[0*count + k], add, rrrs_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, rrrs_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, rrrs_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, rrrs_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, rrrs_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, rrrs_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + rrrs_M_ta_t_3 : rrrs_M_ta_t_3;  /* M_ta_rrrs_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + rrrs_M_ta_t_4 : rrrs_M_ta_t_4;  /* M_ta_rrrs_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + rrrs_M_ta_t_5 : rrrs_M_ta_t_5;  /* M_ta_rrrs_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + rrrs_M_ta_t_6 : rrrs_M_ta_t_6;  /* M_ta_rrrs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + rrrs_M_ta_t_8 : rrrs_M_ta_t_8;  /* M_ta_rrrs_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + rrrs_M_ta_t_9 : rrrs_M_ta_t_9;  /* M_ta_rrrs_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + rrrs_M_ta_t_10 : rrrs_M_ta_t_10;  /* M_ta_rrrs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + rrrs_M_ta_t_11 : rrrs_M_ta_t_11;  /* M_ta_rrrs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + rrrs_M_ta_t_12 : rrrs_M_ta_t_12;  /* M_ta_rrrs_zz */
+        gather(&terms[6*count + k], add, rrrs_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, rrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, rrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, rrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, rrrs_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, rrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, rrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, rrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, rrrs_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + rrrs_M_aa_t : rrrs_M_aa_t;  /* M_aa_rrrs_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + rrrs_M_aa_t_2 : rrrs_M_aa_t_2;  /* M_aa_rrrs_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + rrrs_M_aa_t_3 : rrrs_M_aa_t_3;  /* M_aa_rrrs_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + rrrs_M_aa_t_4 : rrrs_M_aa_t_4;  /* M_aa_rrrs_yy */
-        terms[19*count + k] = add ? terms[19*count + k] + rrrs_M_aa_t_5 : rrrs_M_aa_t_5;  /* M_aa_rrrs_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + rrrs_M_aa_t_6 : rrrs_M_aa_t_6;  /* M_aa_rrrs_zz */
+        gather(&terms[15*count + k], add, rrrs_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[21*count + k], add, rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[22*count + k], add, rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
@@ -4681,120 +4663,95 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_rrrrs_xx = sums[0*w + k];
-        const real M_tt_rrrs_xx = sums[21*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_rrrrs_xx + M_tt_rrrs_xx + m_star;
-        const real M_tt_rrrrs_xy = sums[1*w + k];
-        const real M_tt_rrrs_xy = sums[22*w + k];
-        const real M_tt_xy = M_tt_rrrrs_xy + M_tt_rrrs_xy;
-        const real M_tt_rrrrs_xz = sums[2*w + k];
-        const real M_tt_rrrs_xz = sums[23*w + k];
-        const real M_tt_xz = M_tt_rrrrs_xz + M_tt_rrrs_xz;
-        const real M_tt_rrrrs_yy = sums[3*w + k];
-        const real M_tt_rrrs_yy = sums[24*w + k];
-        const real M_tt_yy = M_tt_rrrrs_yy + M_tt_rrrs_yy + m_star;
-        const real M_tt_rrrrs_yz = sums[4*w + k];
-        const real M_tt_rrrs_yz = sums[25*w + k];
-        const real M_tt_yz = M_tt_rrrrs_yz + M_tt_rrrs_yz;
-        const real M_tt_rrrrs_zz = sums[5*w + k];
-        const real M_tt_rrrs_zz = sums[26*w + k];
-        const real M_tt_zz = M_tt_rrrrs_zz + M_tt_rrrs_zz + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_rrrrs_xx = sums[6*w + k];
-        const real M_ta_rrrs_xx = sums[27*w + k];
-        const real M_ta_xx = M_ta_rrrrs_xx + M_ta_rrrs_xx;
-        const real M_ta_rrrrs_xy = sums[7*w + k];
-        const real M_ta_rrrs_xy = sums[28*w + k];
+        const real M_ta_xy_of_legs = sums[7*w + k];
         const real h_star_z = s[14*w + k];
-        const real M_ta_xy = M_ta_rrrrs_xy + M_ta_rrrs_xy + h_star_z;
-        const real M_ta_rrrrs_xz = sums[8*w + k];
-        const real M_ta_rrrs_xz = sums[29*w + k];
+        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+        const real M_ta_xz_of_legs = sums[8*w + k];
         const real h_star_y = s[13*w + k];
-        const real M_ta_xz = M_ta_rrrrs_xz + M_ta_rrrs_xz - h_star_y;
-        const real M_ta_rrrrs_yx = sums[9*w + k];
-        const real M_ta_rrrs_yx = sums[30*w + k];
-        const real M_ta_yx = M_ta_rrrrs_yx + M_ta_rrrs_yx - h_star_z;
-        const real M_ta_rrrrs_yy = sums[10*w + k];
-        const real M_ta_rrrs_yy = sums[31*w + k];
-        const real M_ta_yy = M_ta_rrrrs_yy + M_ta_rrrs_yy;
-        const real M_ta_rrrrs_yz = sums[11*w + k];
-        const real M_ta_rrrs_yz = sums[32*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yx_of_legs = sums[9*w + k];
+        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+        const real M_ta_yz_of_legs = sums[11*w + k];
         const real h_star_x = s[12*w + k];
-        const real M_ta_yz = M_ta_rrrrs_yz + M_ta_rrrs_yz + h_star_x;
-        const real M_ta_rrrrs_zx = sums[12*w + k];
-        const real M_ta_rrrs_zx = sums[33*w + k];
-        const real M_ta_zx = M_ta_rrrrs_zx + M_ta_rrrs_zx + h_star_y;
-        const real M_ta_rrrrs_zy = sums[13*w + k];
-        const real M_ta_rrrs_zy = sums[34*w + k];
-        const real M_ta_zy = M_ta_rrrrs_zy + M_ta_rrrs_zy - h_star_x;
-        const real M_ta_rrrrs_zz = sums[14*w + k];
-        const real M_ta_rrrs_zz = sums[35*w + k];
-        const real M_ta_zz = M_ta_rrrrs_zz + M_ta_rrrs_zz;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+        const real M_ta_zx_of_legs = sums[12*w + k];
+        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+        const real M_ta_zy_of_legs = sums[13*w + k];
+        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[15*w + k];
-        const real M_aa_rrrrs_xx = sums[15*w + k];
-        const real M_aa_rrrs_xx = sums[36*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_rrrrs_xx + M_aa_rrrs_xx;
+        const real M_aa_xx_of_legs = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[16*w + k];
-        const real M_aa_rrrrs_xy = sums[16*w + k];
-        const real M_aa_rrrs_xy = sums[37*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_rrrrs_xy + M_aa_rrrs_xy;
+        const real M_aa_xy_of_legs = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[17*w + k];
-        const real M_aa_rrrs_xz = sums[38*w + k];
         const real M_aa_t = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_rrrs_xz - M_aa_t;
+        const real M_aa_xz_of_legs = sums[21*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs - M_aa_t;
         const real J_star_yy = s[18*w + k];
-        const real M_aa_rrrs_yy = sums[39*w + k];
         const real M_aa_t_2 = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_rrrs_yy - M_aa_t_2;
+        const real M_aa_yy_of_legs = sums[22*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs - M_aa_t_2;
         const real J_star_yz = s[19*w + k];
-        const real M_aa_rrrrs_yz = sums[19*w + k];
-        const real M_aa_rrrs_yz = sums[40*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_rrrrs_yz + M_aa_rrrs_yz;
+        const real M_aa_yz_of_legs = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[20*w + k];
-        const real M_aa_rrrrs_zz = sums[20*w + k];
-        const real M_aa_rrrs_zz = sums[41*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_rrrrs_zz + M_aa_rrrs_zz;
+        const real M_aa_zz_of_legs = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = M_tt_xy;
-        M[7*w + k] = M_tt_xy;
-        M[2*w + k] = M_tt_xz;
-        M[14*w + k] = M_tt_xz;
-        M[8*w + k] = M_tt_yy;
-        M[9*w + k] = M_tt_yz;
-        M[15*w + k] = M_tt_yz;
-        M[16*w + k] = M_tt_zz;
+        M[0*NV*w + k] = M_tt_xx;
+        const real M_tt_xy = sums[1*w + k];
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*NV*w + k] = M_tt_xz;
+        M[(NV + 1)*w + k] = M_tt_yy;
+        const real M_tt_yz = sums[4*w + k];
+        M[(NV + 2)*w + k] = M_tt_yz;
+        M[(2*NV + 1)*w + k] = M_tt_yz;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
-        M[3*w + k] = M_ta_xx;
-        M[21*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[28*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[35*w + k] = M_ta_xz;
-        M[10*w + k] = M_ta_yx;
-        M[22*w + k] = M_ta_yx;
-        M[11*w + k] = M_ta_yy;
-        M[29*w + k] = M_ta_yy;
-        M[12*w + k] = M_ta_yz;
-        M[36*w + k] = M_ta_yz;
-        M[17*w + k] = M_ta_zx;
-        M[23*w + k] = M_ta_zx;
-        M[18*w + k] = M_ta_zy;
-        M[30*w + k] = M_ta_zy;
-        M[19*w + k] = M_ta_zz;
-        M[37*w + k] = M_ta_zz;
+        const real M_ta_xx = sums[6*w + k];
+        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*NV*w + k] = M_ta_xx;
+        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*NV*w + k] = M_ta_xy;
+        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*NV*w + k] = M_ta_xz;
+        M[(NV + 3)*w + k] = M_ta_yx;
+        M[(3*NV + 1)*w + k] = M_ta_yx;
+        const real M_ta_yy = sums[10*w + k];
+        M[(NV + 4)*w + k] = M_ta_yy;
+        M[(4*NV + 1)*w + k] = M_ta_yy;
+        M[(NV + 5)*w + k] = M_ta_yz;
+        M[(5*NV + 1)*w + k] = M_ta_yz;
+        M[(2*NV + 3)*w + k] = M_ta_zx;
+        M[(3*NV + 2)*w + k] = M_ta_zx;
+        M[(2*NV + 4)*w + k] = M_ta_zy;
+        M[(4*NV + 2)*w + k] = M_ta_zy;
+        const real M_ta_zz = sums[14*w + k];
+        M[(2*NV + 5)*w + k] = M_ta_zz;
+        M[(5*NV + 2)*w + k] = M_ta_zz;
         /* (M_aa) rotational block of M */
-        M[24*w + k] = M_aa_xx;
-        M[25*w + k] = M_aa_xy;
-        M[31*w + k] = M_aa_xy;
-        M[26*w + k] = M_aa_xz;
-        M[38*w + k] = M_aa_xz;
-        M[32*w + k] = M_aa_yy;
-        M[33*w + k] = M_aa_yz;
-        M[39*w + k] = M_aa_yz;
-        M[40*w + k] = M_aa_zz;
+        M[(3*NV + 3)*w + k] = M_aa_xx;
+        M[(3*NV + 4)*w + k] = M_aa_xy;
+        M[(4*NV + 3)*w + k] = M_aa_xy;
+        M[(3*NV + 5)*w + k] = M_aa_xz;
+        M[(5*NV + 3)*w + k] = M_aa_xz;
+        M[(4*NV + 4)*w + k] = M_aa_yy;
+        M[(4*NV + 5)*w + k] = M_aa_yz;
+        M[(5*NV + 4)*w + k] = M_aa_yz;
+        M[(5*NV + 5)*w + k] = M_aa_zz;
         t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
             M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
             (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
@@ -4804,44 +4761,50 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0}, sums[42] = {0}, terms_rrrrs[21*LEGS(1)] = {0}, o_rrrrs[16*LEGS(1)] = {0},
-        terms_rrrs[21*LEGS(2)] = {0}, o_rrrs[2*LEGS(2)] = {0};
+    real s[21] = {0};
+    real sums[23] = {0};
+    real terms_rrrrs[23*LEGS(LEGS_OF_rrrrs)] = {0};
+    real o_rrrrs[16*LEGS(LEGS_OF_rrrrs)] = {0};
+    real terms_rrrs[23*LEGS(LEGS_OF_rrrs)] = {0};
+    real o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(1), 0, X, terms_rrrrs, o_rrrrs);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        M_place_rrrrs(1, LEGS(1), o_rrrrs, leg, M, t);
+    M_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, terms_rrrrs, o_rrrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
+        M_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, M, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
-        sums[n] = total(terms_rrrrs + n*LEGS(1), 1);
+    for (size_t n = 0; n < 23; ++n) {
+        sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    M_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        M_place_rrrs(1, LEGS(2), o_rrrs, leg, t);
+    M_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        M_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
-        sums[21 + n] = total(terms_rrrs + n*LEGS(2), 2);
+    for (size_t n = 0; n < 23; ++n) {
+        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     M_after(m, 1, s, sums, M, t);
 }
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES], sums[42*LANES], o_rrrrs[16*LANES], o_rrrs[2*LANES];
+    real s[21*LANES];
+    real sums[23*LANES];
+    real o_rrrrs[16*LANES];
+    real o_rrrs[2*LANES];
     M_before(m, LANES, X, s, t);
-    clear(sums, 21*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    clear(sums, 23*LANES);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
         M_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rrrrs);
         M_place_rrrrs(LANES, LANES, o_rrrrs, 0, M, t);
     }
-    clear(sums + 21*LANES, 21*LANES);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        M_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums + 21*LANES, o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        M_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrrs);
         M_place_rrrs(LANES, LANES, o_rrrs, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
 }
 
-/* ---- Z: 1048 mul, 781 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
     *t)
 {
@@ -5013,7 +4976,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real t_z = s[2*w + j];
         const real rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z;
         /* (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrrs_y_2_extra = X[(7)*w + j];
+        const real rrrrs_y_2_extra = X[7*w + j];
         const real rrrrs_c_2 = -sine(rrrrs_y_2_extra);
         /* (rrrrs-s_2) sine of the angle of joint 2 from its reference direction */
         const real rrrrs_s_2 = cosine(rrrrs_y_2_extra);
@@ -5160,7 +5123,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z;
         const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y -
             axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x;
-        const real rrrrs_yd_2 = V[(6)*w + j];
+        const real rrrrs_yd_2 = V[6*w + j];
         const real rrrrs_S_dot_rest_x = rrrrs_S_dot_x -
             rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
             axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y);
@@ -5495,7 +5458,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_N_1_o_in_axes1_z = rrrrs_mu_1_o_in_axes1_z +
             rrrrs_N_2_o_in_axes2_x*rrrrs_s_2 + rrrrs_N_2_o_in_axes2_y*rrrrs_c_2;
         /* (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y;
         const real rrrrs_G_o_in_axes4_x =
             -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x -
@@ -5520,7 +5483,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_U_z = -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x -
             axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y - axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z;
         /* (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 2 */
+           extra degree of freedom of joint 2 */
         const real rrrrs_P_2_o_t = rrrrs_G_o_in_axes4_x*rrrrs_r_2_in_axes4_y -
             rrrrs_G_o_in_axes4_y*rrrrs_r_2_in_axes4_x;
         const real rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t;
@@ -5529,15 +5492,15 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_Z_a_t_2 = rrrrs_U_x*rrrrs_q_z - rrrrs_U_z*rrrrs_q_x;
         const real rrrrs_Z_a_t_3 = rrrrs_U_y*rrrrs_q_x - rrrrs_U_x*rrrrs_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + rrrrs_U_x : rrrrs_U_x;  /* Z_t_rrrrs_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrrs_U_y : rrrrs_U_y;  /* Z_t_rrrrs_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrrs_U_z : rrrrs_U_z;  /* Z_t_rrrrs_z */
+        gather(&terms[0*count + k], add, rrrrs_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, rrrrs_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, rrrrs_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrrs_Z_a_t : rrrrs_Z_a_t;  /* Z_a_rrrrs_x */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrrs_Z_a_t_2 : rrrrs_Z_a_t_2;  /* Z_a_rrrrs_y */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrrs_Z_a_t_3 : rrrrs_Z_a_t_3;  /* Z_a_rrrrs_z */
+        gather(&terms[3*count + k], add, rrrrs_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[4*count + k], add, rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[5*count + k], add, rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 2 */
+           extra degree of freedom of joint 2 */
         o[0*count + k] = rrrrs_P_2_o;
         o[3*count + k] = rrrrs_P_2_o;
         const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
@@ -5555,7 +5518,7 @@ INLINE void Z_place_rrrrs(size_t w, size_t count, const real *o, size_t first, r
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Z[(6)*w + k] = o[0*count + first + k];
+        Z[6*w + k] = o[0*count + first + k];
         t->unreachable[k] += o[1*count + first + k];
         t->singular[k] += o[2*count + first + k];
         t->total[k] += o[3*count + first + k];
@@ -5916,7 +5879,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2
             + rrrs_N_2_o_in_axes2_y*rrrs_c_2;
         /* (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
         /* (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
@@ -5943,13 +5906,13 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x;
         const real rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_U_x : rrrs_U_x;  /* Z_t_rrrs_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrs_U_y : rrrs_U_y;  /* Z_t_rrrs_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrs_U_z : rrrs_U_z;  /* Z_t_rrrs_z */
+        gather(&terms[0*count + k], add, rrrs_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, rrrs_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, rrrs_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrs_Z_a_t : rrrs_Z_a_t;  /* Z_a_rrrs_x */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrs_Z_a_t_2 : rrrs_Z_a_t_2;  /* Z_a_rrrs_y */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrs_Z_a_t_3 : rrrs_Z_a_t_3;  /* Z_a_rrrs_z */
+        gather(&terms[3*count + k], add, rrrs_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[4*count + k], add, rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[5*count + k], add, rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
@@ -5974,30 +5937,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real Z_t_rrrrs_x = sums[0*w + k];
-        const real Z_t_rrrs_x = sums[6*w + k];
-        const real Z_t_x = Z_p_x + Z_t_rrrrs_x + Z_t_rrrs_x;
+        const real Z_t_x_of_legs = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[19*w + k];
-        const real Z_t_rrrrs_y = sums[1*w + k];
-        const real Z_t_rrrs_y = sums[7*w + k];
-        const real Z_t_y = Z_p_y + Z_t_rrrrs_y + Z_t_rrrs_y;
+        const real Z_t_y_of_legs = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = s[20*w + k];
-        const real Z_t_rrrrs_z = sums[2*w + k];
-        const real Z_t_rrrs_z = sums[8*w + k];
-        const real Z_t_z = Z_p_z + Z_t_rrrrs_z + Z_t_rrrs_z;
+        const real Z_t_z_of_legs = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_rrrrs_x = sums[3*w + k];
-        const real Z_a_rrrs_x = sums[9*w + k];
+        const real Z_a_x_of_legs = sums[3*w + k];
         const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_rrrrs_x + Z_a_rrrs_x + Z_q_x;
-        const real Z_a_rrrrs_y = sums[4*w + k];
-        const real Z_a_rrrs_y = sums[10*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[4*w + k];
         const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_rrrrs_y + Z_a_rrrs_y + Z_q_y;
-        const real Z_a_rrrrs_z = sums[5*w + k];
-        const real Z_a_rrrs_z = sums[11*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[5*w + k];
         const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_rrrrs_z + Z_a_rrrs_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -6012,44 +5969,50 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0}, sums[12] = {0}, terms_rrrrs[6*LEGS(1)] = {0}, o_rrrrs[4*LEGS(1)] = {0},
-        terms_rrrs[6*LEGS(2)] = {0}, o_rrrs[2*LEGS(2)] = {0};
+    real s[24] = {0};
+    real sums[6] = {0};
+    real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] = {0};
+    real o_rrrrs[4*LEGS(LEGS_OF_rrrrs)] = {0};
+    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
+    real o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(1), 0, X, V, terms_rrrrs, o_rrrrs);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        Z_place_rrrrs(1, LEGS(1), o_rrrrs, leg, Z, t);
+    Z_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, V, terms_rrrrs, o_rrrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
+        Z_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, Z, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_rrrrs + n*LEGS(1), 1);
+        sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    Z_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        Z_place_rrrs(1, LEGS(2), o_rrrs, leg, t);
+    Z_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        Z_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[6 + n] = total(terms_rrrs + n*LEGS(2), 2);
+        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     Z_after(1, s, sums, Z, t);
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES], sums[12*LANES], o_rrrrs[4*LANES], o_rrrs[2*LANES];
+    real s[24*LANES];
+    real sums[6*LANES];
+    real o_rrrrs[4*LANES];
+    real o_rrrs[2*LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
         Z_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrrrs);
         Z_place_rrrrs(LANES, LANES, o_rrrrs, 0, Z, t);
     }
-    clear(sums + 6*LANES, 6*LANES);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        Z_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums + 6*LANES, o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        Z_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrrs);
         Z_place_rrrs(LANES, LANES, o_rrrs, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
-/* ---- H: 346 mul, 179 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- H ---- */
 INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -6138,7 +6101,7 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real t_z = s[2*w + j];
         const real rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z;
         /* (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrrs_y_2_extra = X[(7)*w + j];
+        const real rrrrs_y_2_extra = X[7*w + j];
         const real rrrrs_c_2 = -sine(rrrrs_y_2_extra);
         /* (rrrrs-s_2) sine of the angle of joint 2 from its reference direction */
         const real rrrrs_s_2 = cosine(rrrrs_y_2_extra);
@@ -6312,20 +6275,20 @@ INLINE void H_place_rrrrs(size_t w, size_t count, const real *o, size_t first, r
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o[0*count + first + k];
-        H[(7)*w + k] = o[1*count + first + k];
-        H[(14)*w + k] = o[2*count + first + k];
-        H[(21)*w + k] = o[3*count + first + k];
-        H[(28)*w + k] = o[4*count + first + k];
-        H[(35)*w + k] = o[5*count + first + k];
-        H[(43)*w + k] = o[6*count + first + k];
-        H[(2)*w + k] = o[7*count + first + k];
-        H[(9)*w + k] = o[8*count + first + k];
-        H[(16)*w + k] = o[9*count + first + k];
-        H[(23)*w + k] = o[10*count + first + k];
-        H[(30)*w + k] = o[11*count + first + k];
-        H[(37)*w + k] = o[12*count + first + k];
-        H[(44)*w + k] = o[13*count + first + k];
+        H[0*NU*w + k] = o[0*count + first + k];
+        H[NU*w + k] = o[1*count + first + k];
+        H[2*NU*w + k] = o[2*count + first + k];
+        H[3*NU*w + k] = o[3*count + first + k];
+        H[4*NU*w + k] = o[4*count + first + k];
+        H[5*NU*w + k] = o[5*count + first + k];
+        H[(6*NU + 1)*w + k] = o[6*count + first + k];
+        H[(0*NU + 2)*w + k] = o[7*count + first + k];
+        H[(NU + 2)*w + k] = o[8*count + first + k];
+        H[(2*NU + 2)*w + k] = o[9*count + first + k];
+        H[(3*NU + 2)*w + k] = o[10*count + first + k];
+        H[(4*NU + 2)*w + k] = o[11*count + first + k];
+        H[(5*NU + 2)*w + k] = o[12*count + first + k];
+        H[(6*NU + 2)*w + k] = o[13*count + first + k];
         t->unreachable[k] += o[14*count + first + k];
         t->singular[k] += o[15*count + first + k];
         t->total[k] += o[16*count + first + k];
@@ -6514,18 +6477,18 @@ INLINE void H_place_rrrs(size_t w, size_t count, const real *o, size_t leg, size
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(3 + 2*leg)*w + k] = o[0*count + first + k];
-        H[(10 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(17 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(24 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(31 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(38 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(4 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(11 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(18 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(25 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(32 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(39 + 2*leg)*w + k] = o[11*count + first + k];
+        H[(0*NU + 3 + 2*leg)*w + k] = o[0*count + first + k];
+        H[(NU + 3 + 2*leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 3 + 2*leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + 3 + 2*leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + 3 + 2*leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + 3 + 2*leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + 4 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(NU + 4 + 2*leg)*w + k] = o[7*count + first + k];
+        H[(2*NU + 4 + 2*leg)*w + k] = o[8*count + first + k];
+        H[(3*NU + 4 + 2*leg)*w + k] = o[9*count + first + k];
+        H[(4*NU + 4 + 2*leg)*w + k] = o[10*count + first + k];
+        H[(5*NU + 4 + 2*leg)*w + k] = o[11*count + first + k];
         t->unreachable[k] += o[12*count + first + k];
         t->singular[k] += o[13*count + first + k];
         t->total[k] += o[14*count + first + k];
@@ -6534,35 +6497,39 @@ INLINE void H_place_rrrs(size_t w, size_t count, const real *o, size_t leg, size
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0}, o_rrrrs[17*LEGS(1)] = {0}, o_rrrs[15*LEGS(2)] = {0};
-    clear(H, 49);
+    real s[12] = {0};
+    real o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] = {0};
+    real o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
+    clear(H, NV*NU);
     H_before(1, X, s, t);
-    H_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(1), X, o_rrrrs);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        H_place_rrrrs(1, LEGS(1), o_rrrrs, leg, H, t);
+    H_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), X, o_rrrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
+        H_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, H, t);
     }
-    H_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(2), o_rrrs);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        H_place_rrrs(1, LEGS(2), o_rrrs, leg, leg, H, t);
+    H_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        H_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, t);
     }
 }
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES], o_rrrrs[17*LANES], o_rrrs[15*LANES];
-    clear(H, 49*LANES);
+    real s[12*LANES];
+    real o_rrrrs[17*LANES];
+    real o_rrrs[15*LANES];
+    clear(H, NV*NU*LANES);
     H_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
         H_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, X, o_rrrrs);
         H_place_rrrrs(LANES, LANES, o_rrrrs, 0, H, t);
     }
-    for (size_t leg = 0; leg < 2; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         H_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, o_rrrs);
         H_place_rrrs(LANES, LANES, o_rrrs, leg, 0, H, t);
     }
 }
 
-/* ---- required: 1147 mul, 858 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- required ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
     *A, real *s, verdict *t)
 {
@@ -6769,7 +6736,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real t_z = s[2*w + j];
         const real rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z;
         /* (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrrs_y_2_extra = X[(7)*w + j];
+        const real rrrrs_y_2_extra = X[7*w + j];
         const real rrrrs_c_2 = -sine(rrrrs_y_2_extra);
         /* (rrrrs-s_2) sine of the angle of joint 2 from its reference direction */
         const real rrrrs_s_2 = cosine(rrrrs_y_2_extra);
@@ -6921,7 +6888,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x;
         const real rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x;
         /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real rrrrs_yd_2 = V[(6)*w + j];
+        const real rrrrs_yd_2 = V[6*w + j];
         const real rrrrs_S_dot_rest_x = rrrrs_S_dot_x -
             rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
             axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y);
@@ -7046,7 +7013,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             2*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
         /* (rrrrs-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrrrs_ydd_2 = A[(6)*w + j];
+        const real rrrrs_ydd_2 = A[6*w + j];
         const real rrrrs_rel_in_axes4_x = rrrrs_S_ddot_in_axes4_x +
             rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 - rrrrs_bias_in_axes4_x;
         const real rrrrs_rel_in_axes4_y = rrrrs_S_ddot_in_axes4_y - rrrrs_bias_in_axes4_y -
@@ -7254,7 +7221,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_N_1_in_axes1_z = rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_s_2 +
             rrrrs_N_2_in_axes2_y*rrrrs_c_2;
         /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y;
         const real rrrrs_G_in_axes4_x =
             -rrrrs_w_3_in_axes4_x*(rrrrs_G_in_axes4_y*rrrrs_r_3_in_axes4_x -
@@ -7277,7 +7244,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             axis_y_rrrrs_axes4_y*rrrrs_c_in_axes4_y + axis_z_rrrrs_axes4_y*rrrrs_c_in_axes4_z;
         const real rrrrs_c_z = axis_x_rrrrs_axes4_z*rrrrs_c_in_axes4_x +
             axis_y_rrrrs_axes4_z*rrrrs_c_in_axes4_y + axis_z_rrrrs_axes4_z*rrrrs_c_in_axes4_z;
-        /* (rrrrs-P_2) inertia and weight of the leg along the extra freedom of joint 2 */
+        /* (rrrrs-P_2) inertia and weight of the leg along the extra degree of freedom of joint 2 */
         const real rrrrs_P_2_t = rrrrs_G_in_axes4_x*rrrrs_r_2_in_axes4_y -
             rrrrs_G_in_axes4_y*rrrrs_r_2_in_axes4_x;
         const real rrrrs_P_2 = rrrrs_N_2_in_axes2_z + rrrrs_P_2_t;
@@ -7294,14 +7261,14 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z;
         const real rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + rrrrs_c_x : rrrrs_c_x;  /* R_t_t */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrrs_c_y : rrrrs_c_y;  /* R_t_t_2 */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrrs_c_z : rrrrs_c_z;  /* R_t_t_3 */
+        gather(&terms[0*count + k], add, rrrrs_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, rrrrs_c_y);  /* R_t_y_of_legs */
+        gather(&terms[2*count + k], add, rrrrs_c_z);  /* R_t_z_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrrs_R_a_t : rrrrs_R_a_t;  /* R_a_rrrrs_x */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrrs_R_a_t_2 : rrrrs_R_a_t_2;  /* R_a_rrrrs_y */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrrs_R_a_t_3 : rrrrs_R_a_t_3;  /* R_a_rrrrs_z */
-        /* (rrrrs-P_2) inertia and weight of the leg along the extra freedom of joint 2 */
+        gather(&terms[3*count + k], add, rrrrs_R_a_t);  /* R_a_x_of_legs */
+        gather(&terms[4*count + k], add, rrrrs_R_a_t_2);  /* R_a_y_of_legs */
+        gather(&terms[5*count + k], add, rrrrs_R_a_t_3);  /* R_a_z_of_legs */
+        /* (rrrrs-P_2) inertia and weight of the leg along the extra degree of freedom of joint 2 */
         o[0*count + k] = rrrrs_P_2;
         /* (rrrrs-w_1) reciprocal vector 1 */
         o[1*count + k] = rrrrs_w_1_x;
@@ -7338,21 +7305,21 @@ INLINE void required_place_rrrrs(size_t w, size_t count, const real *o, size_t f
     *required, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        required[(6)*w + k] = o[0*count + first + k];
-        H[(0)*w + k] = o[1*count + first + k];
-        H[(7)*w + k] = o[2*count + first + k];
-        H[(14)*w + k] = o[3*count + first + k];
-        H[(21)*w + k] = o[4*count + first + k];
-        H[(28)*w + k] = o[5*count + first + k];
-        H[(35)*w + k] = o[6*count + first + k];
-        H[(43)*w + k] = o[7*count + first + k];
-        H[(2)*w + k] = o[8*count + first + k];
-        H[(9)*w + k] = o[9*count + first + k];
-        H[(16)*w + k] = o[10*count + first + k];
-        H[(23)*w + k] = o[11*count + first + k];
-        H[(30)*w + k] = o[12*count + first + k];
-        H[(37)*w + k] = o[13*count + first + k];
-        H[(44)*w + k] = o[14*count + first + k];
+        required[6*w + k] = o[0*count + first + k];
+        H[0*NU*w + k] = o[1*count + first + k];
+        H[NU*w + k] = o[2*count + first + k];
+        H[2*NU*w + k] = o[3*count + first + k];
+        H[3*NU*w + k] = o[4*count + first + k];
+        H[4*NU*w + k] = o[5*count + first + k];
+        H[5*NU*w + k] = o[6*count + first + k];
+        H[(6*NU + 1)*w + k] = o[7*count + first + k];
+        H[(0*NU + 2)*w + k] = o[8*count + first + k];
+        H[(NU + 2)*w + k] = o[9*count + first + k];
+        H[(2*NU + 2)*w + k] = o[10*count + first + k];
+        H[(3*NU + 2)*w + k] = o[11*count + first + k];
+        H[(4*NU + 2)*w + k] = o[12*count + first + k];
+        H[(5*NU + 2)*w + k] = o[13*count + first + k];
+        H[(6*NU + 2)*w + k] = o[14*count + first + k];
         t->unreachable[k] += o[15*count + first + k];
         t->singular[k] += o[16*count + first + k];
     }
@@ -7719,7 +7686,7 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 +
             rrrs_N_2_in_axes2_y*rrrs_c_2;
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y;
         /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
            point */
@@ -7751,13 +7718,13 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z;
         const real rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_c_x : rrrs_c_x;  /* R_t_t_4 */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrs_c_y : rrrs_c_y;  /* R_t_t_5 */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrs_c_z : rrrs_c_z;  /* R_t_t_6 */
+        gather(&terms[0*count + k], add, rrrs_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, rrrs_c_y);  /* R_t_y_of_legs */
+        gather(&terms[2*count + k], add, rrrs_c_z);  /* R_t_z_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrs_R_a_t : rrrs_R_a_t;  /* R_a_rrrs_x */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrs_R_a_t_2 : rrrs_R_a_t_2;  /* R_a_rrrs_y */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrs_R_a_t_3 : rrrs_R_a_t_3;  /* R_a_rrrs_z */
+        gather(&terms[3*count + k], add, rrrs_R_a_t);  /* R_a_x_of_legs */
+        gather(&terms[4*count + k], add, rrrs_R_a_t_2);  /* R_a_y_of_legs */
+        gather(&terms[5*count + k], add, rrrs_R_a_t_3);  /* R_a_z_of_legs */
         /* (rrrs-w_1) reciprocal vector 1 */
         o[0*count + k] = rrrs_w_1_x;
         o[1*count + k] = rrrs_w_1_y;
@@ -7789,18 +7756,18 @@ INLINE void required_place_rrrs(size_t w, size_t count, const real *o, size_t le
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(3 + 2*leg)*w + k] = o[0*count + first + k];
-        H[(10 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(17 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(24 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(31 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(38 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(4 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(11 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(18 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(25 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(32 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(39 + 2*leg)*w + k] = o[11*count + first + k];
+        H[(0*NU + 3 + 2*leg)*w + k] = o[0*count + first + k];
+        H[(NU + 3 + 2*leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 3 + 2*leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + 3 + 2*leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + 3 + 2*leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + 3 + 2*leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + 4 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(NU + 4 + 2*leg)*w + k] = o[7*count + first + k];
+        H[(2*NU + 4 + 2*leg)*w + k] = o[8*count + first + k];
+        H[(3*NU + 4 + 2*leg)*w + k] = o[9*count + first + k];
+        H[(4*NU + 4 + 2*leg)*w + k] = o[10*count + first + k];
+        H[(5*NU + 4 + 2*leg)*w + k] = o[11*count + first + k];
         t->unreachable[k] += o[12*count + first + k];
         t->singular[k] += o[13*count + first + k];
     }
@@ -7810,31 +7777,25 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
-        const real R_t_t = sums[0*w + k];
-        const real R_t_t_4 = sums[6*w + k];
+        const real R_t_x_of_legs = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real R_t_x = f_p_x - R_t_t - R_t_t_4;
-        const real R_t_t_2 = sums[1*w + k];
-        const real R_t_t_5 = sums[7*w + k];
+        const real R_t_x = f_p_x - R_t_x_of_legs;
+        const real R_t_y_of_legs = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real R_t_y = f_p_y - R_t_t_2 - R_t_t_5;
-        const real R_t_t_3 = sums[2*w + k];
-        const real R_t_t_6 = sums[8*w + k];
+        const real R_t_y = f_p_y - R_t_y_of_legs;
+        const real R_t_z_of_legs = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real R_t_z = f_p_z - R_t_t_3 - R_t_t_6;
+        const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_rrrrs_x = sums[3*w + k];
-        const real R_a_rrrs_x = sums[9*w + k];
+        const real R_a_x_of_legs = sums[3*w + k];
         const real mu_p_x = s[27*w + k];
-        const real R_a_x = R_a_rrrrs_x + R_a_rrrs_x + mu_p_x;
-        const real R_a_rrrrs_y = sums[4*w + k];
-        const real R_a_rrrs_y = sums[10*w + k];
+        const real R_a_x = R_a_x_of_legs + mu_p_x;
+        const real R_a_y_of_legs = sums[4*w + k];
         const real mu_p_y = s[28*w + k];
-        const real R_a_y = R_a_rrrrs_y + R_a_rrrs_y + mu_p_y;
-        const real R_a_rrrrs_z = sums[5*w + k];
-        const real R_a_rrrs_z = sums[11*w + k];
+        const real R_a_y = R_a_y_of_legs + mu_p_y;
+        const real R_a_z_of_legs = sums[5*w + k];
         const real mu_p_z = s[29*w + k];
-        const real R_a_z = R_a_rrrrs_z + R_a_rrrs_z + mu_p_z;
+        const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -7849,23 +7810,27 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[30] = {0}, sums[12] = {0}, terms_rrrrs[6*LEGS(1)] = {0}, o_rrrrs[17*LEGS(1)] = {0},
-        terms_rrrs[6*LEGS(2)] = {0}, o_rrrs[14*LEGS(2)] = {0};
-    clear(H, 49);
+    real s[30] = {0};
+    real sums[6] = {0};
+    real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] = {0};
+    real o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] = {0};
+    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
+    real o_rrrs[14*LEGS(LEGS_OF_rrrs)] = {0};
+    clear(H, NV*NU);
     required_before(m, 1, X, V, A, s, t);
-    required_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(1), 0, X, V, A, terms_rrrrs, o_rrrrs);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        required_place_rrrrs(1, LEGS(1), o_rrrrs, leg, required, H, t);
+    required_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, V, A, terms_rrrrs, o_rrrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
+        required_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, required, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_rrrrs + n*LEGS(1), 1);
+        sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    required_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        required_place_rrrs(1, LEGS(2), o_rrrs, leg, leg, H, t);
+    required_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        required_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[6 + n] = total(terms_rrrs + n*LEGS(2), 2);
+        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     required_after(1, s, sums, required);
 }
@@ -7873,23 +7838,25 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[30*LANES], sums[12*LANES], o_rrrrs[17*LANES], o_rrrs[14*LANES];
-    clear(H, 49*LANES);
+    real s[30*LANES];
+    real sums[6*LANES];
+    real o_rrrrs[17*LANES];
+    real o_rrrs[14*LANES];
+    clear(H, NV*NU*LANES);
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
         required_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rrrrs);
         required_place_rrrrs(LANES, LANES, o_rrrrs, 0, required, H, t);
     }
-    clear(sums + 6*LANES, 6*LANES);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        required_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums + 6*LANES, o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        required_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrrs);
         required_place_rrrs(LANES, LANES, o_rrrs, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
-/* ---- inverse_kinematics: 148 mul, 87 add, 6 div, 6 sqrt, 11 trig, every leg counted ---- */
+/* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -7975,7 +7942,7 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t le
         const real rrrrs_S_z = t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y +
             R_zz*rrrrs_platform_point_z - rrrrs_base_point_z;
         /* (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrrs_y_2_extra = X[(7)*w + j];
+        const real rrrrs_y_2_extra = X[7*w + j];
         const real rrrrs_c_2 = -sine(rrrrs_y_2_extra);
         /* (rrrrs-s_2) sine of the angle of joint 2 from its reference direction */
         const real rrrrs_s_2 = cosine(rrrrs_y_2_extra);
@@ -8069,10 +8036,10 @@ INLINE void inverse_kinematics_place_rrrrs(size_t w, size_t count, const real *o
     real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(0)*w + k] = o[0*count + first + k];
-        q[(1)*w + k] = o[1*count + first + k];
-        q[(2)*w + k] = o[2*count + first + k];
-        q[(3)*w + k] = o[3*count + first + k];
+        q[0*w + k] = o[0*count + first + k];
+        q[1*w + k] = o[1*count + first + k];
+        q[2*w + k] = o[2*count + first + k];
+        q[3*w + k] = o[3*count + first + k];
         t->unreachable[k] += o[4*count + first + k];
         t->singular[k] += o[5*count + first + k];
         t->total[k] += o[6*count + first + k];
@@ -8203,33 +8170,37 @@ INLINE void inverse_kinematics_place_rrrs(size_t w, size_t count, const real *o,
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0}, o_rrrrs[7*LEGS(1)] = {0}, o_rrrs[6*LEGS(2)] = {0};
+    real s[12] = {0};
+    real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
+    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
     inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(1), X, o_rrrrs);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        inverse_kinematics_place_rrrrs(1, LEGS(1), o_rrrrs, leg, q, t);
+    inverse_kinematics_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), X, o_rrrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
+        inverse_kinematics_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, q, t);
     }
-    inverse_kinematics_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(2), o_rrrs);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        inverse_kinematics_place_rrrs(1, LEGS(2), o_rrrs, leg, leg, q, t);
+    inverse_kinematics_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        inverse_kinematics_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, q, t);
     }
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES], o_rrrrs[7*LANES], o_rrrs[6*LANES];
+    real s[12*LANES];
+    real o_rrrrs[7*LANES];
+    real o_rrrs[6*LANES];
     inverse_kinematics_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
         inverse_kinematics_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, X, o_rrrrs);
         inverse_kinematics_place_rrrrs(LANES, LANES, o_rrrrs, 0, q, t);
     }
-    for (size_t leg = 0; leg < 2; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         inverse_kinematics_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, o_rrrs);
         inverse_kinematics_place_rrrs(LANES, LANES, o_rrrs, leg, 0, q, t);
     }
 }
 
-/* ---- joint_rates: 359 mul, 210 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- joint_rates ---- */
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -8337,7 +8308,7 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t leg, size
         const real t_z = s[2*w + j];
         const real rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z;
         /* (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrrs_y_2_extra = X[(7)*w + j];
+        const real rrrrs_y_2_extra = X[7*w + j];
         const real rrrrs_c_2 = -sine(rrrrs_y_2_extra);
         /* (rrrrs-s_2) sine of the angle of joint 2 from its reference direction */
         const real rrrrs_s_2 = cosine(rrrrs_y_2_extra);
@@ -8475,7 +8446,7 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t leg, size
             axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z;
         const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y -
             axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x;
-        const real rrrrs_yd_2 = V[(6)*w + j];
+        const real rrrrs_yd_2 = V[6*w + j];
         const real rrrrs_S_dot_rest_x = rrrrs_S_dot_x -
             rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
             axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y);
@@ -8522,10 +8493,10 @@ INLINE void joint_rates_place_rrrrs(size_t w, size_t count, const real *o, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(0)*w + k] = o[0*count + first + k];
-        qd[(1)*w + k] = o[1*count + first + k];
-        qd[(2)*w + k] = o[2*count + first + k];
-        qd[(3)*w + k] = o[3*count + first + k];
+        qd[0*w + k] = o[0*count + first + k];
+        qd[1*w + k] = o[1*count + first + k];
+        qd[2*w + k] = o[2*count + first + k];
+        qd[3*w + k] = o[3*count + first + k];
         t->unreachable[k] += o[4*count + first + k];
         t->singular[k] += o[5*count + first + k];
         t->total[k] += o[6*count + first + k];
@@ -8718,34 +8689,38 @@ INLINE void joint_rates_place_rrrs(size_t w, size_t count, const real *o, size_t
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0}, o_rrrrs[7*LEGS(1)] = {0}, o_rrrs[6*LEGS(2)] = {0};
+    real s[18] = {0};
+    real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
+    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
     joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(1), X, V, o_rrrrs);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        joint_rates_place_rrrrs(1, LEGS(1), o_rrrrs, leg, qd, t);
+    joint_rates_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), X, V, o_rrrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
+        joint_rates_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, qd, t);
     }
-    joint_rates_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(2), o_rrrs);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        joint_rates_place_rrrs(1, LEGS(2), o_rrrs, leg, leg, qd, t);
+    joint_rates_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        joint_rates_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, qd, t);
     }
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES], o_rrrrs[7*LANES], o_rrrs[6*LANES];
+    real s[18*LANES];
+    real o_rrrrs[7*LANES];
+    real o_rrrs[6*LANES];
     joint_rates_before(LANES, X, V, s, t);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
         joint_rates_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, X, V, o_rrrrs);
         joint_rates_place_rrrrs(LANES, LANES, o_rrrrs, 0, qd, t);
     }
-    for (size_t leg = 0; leg < 2; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         joint_rates_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, o_rrrs);
         joint_rates_place_rrrs(LANES, LANES, o_rrrs, leg, 0, qd, t);
     }
 }
 
-/* ---- joint_accelerations: 603 mul, 365 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- joint_accelerations ---- */
 INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
     *s, verdict *t)
 {
@@ -8874,7 +8849,7 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t l
         const real t_z = s[2*w + j];
         const real rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z;
         /* (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrrs_y_2_extra = X[(7)*w + j];
+        const real rrrrs_y_2_extra = X[7*w + j];
         const real rrrrs_c_2 = -sine(rrrrs_y_2_extra);
         /* (rrrrs-s_2) sine of the angle of joint 2 from its reference direction */
         const real rrrrs_s_2 = cosine(rrrrs_y_2_extra);
@@ -9021,7 +8996,7 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t l
             axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z;
         const real axis_x_rrrrs_axes4_z = axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y -
             axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x;
-        const real rrrrs_yd_2 = V[(6)*w + j];
+        const real rrrrs_yd_2 = V[6*w + j];
         const real rrrrs_S_dot_rest_x = rrrrs_S_dot_x -
             rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
             axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y);
@@ -9128,7 +9103,7 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t l
             rrrrs_beta_4_in_axes4_y) + 2*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2
             + 2*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
         /* (rrrrs-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrrrs_ydd_2 = A[(6)*w + j];
+        const real rrrrs_ydd_2 = A[6*w + j];
         const real rrrrs_rel_in_axes4_x = axis_x_rrrrs_axes4_x*rrrrs_S_ddot_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_ddot_y + axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z +
             rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 - rrrrs_bias_in_axes4_x;
@@ -9169,10 +9144,10 @@ INLINE void joint_accelerations_place_rrrrs(size_t w, size_t count, const real *
     real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(0)*w + k] = o[0*count + first + k];
-        qdd[(1)*w + k] = o[1*count + first + k];
-        qdd[(2)*w + k] = o[2*count + first + k];
-        qdd[(3)*w + k] = o[3*count + first + k];
+        qdd[0*w + k] = o[0*count + first + k];
+        qdd[1*w + k] = o[1*count + first + k];
+        qdd[2*w + k] = o[2*count + first + k];
+        qdd[3*w + k] = o[3*count + first + k];
         t->unreachable[k] += o[4*count + first + k];
         t->singular[k] += o[5*count + first + k];
         t->total[k] += o[6*count + first + k];
@@ -9449,34 +9424,38 @@ INLINE void joint_accelerations_place_rrrs(size_t w, size_t count, const real *o
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0}, o_rrrrs[7*LEGS(1)] = {0}, o_rrrs[6*LEGS(2)] = {0};
+    real s[24] = {0};
+    real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
+    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
     joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(1), X, V, A, o_rrrrs);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        joint_accelerations_place_rrrrs(1, LEGS(1), o_rrrrs, leg, qdd, t);
+    joint_accelerations_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), X, V, A, o_rrrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
+        joint_accelerations_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, qdd, t);
     }
-    joint_accelerations_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(2), o_rrrs);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        joint_accelerations_place_rrrs(1, LEGS(2), o_rrrs, leg, leg, qdd, t);
+    joint_accelerations_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        joint_accelerations_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES], o_rrrrs[7*LANES], o_rrrs[6*LANES];
+    real s[24*LANES];
+    real o_rrrrs[7*LANES];
+    real o_rrrs[6*LANES];
     joint_accelerations_before(LANES, X, V, A, s, t);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
         joint_accelerations_legs_rrrrs(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rrrrs);
         joint_accelerations_place_rrrrs(LANES, LANES, o_rrrrs, 0, qdd, t);
     }
-    for (size_t leg = 0; leg < 2; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         joint_accelerations_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, o_rrrs);
         joint_accelerations_place_rrrs(LANES, LANES, o_rrrs, leg, 0, qdd, t);
     }
 }
 
-/* ---- legs: 988 mul, 715 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- legs ---- */
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
     *t)
 {
@@ -9604,7 +9583,7 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs
         const real t_z = s[2*w + j];
         const real rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z;
         /* (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrrs_y_2_extra = X[(7)*w + j];
+        const real rrrrs_y_2_extra = X[7*w + j];
         const real rrrrs_c_2 = -sine(rrrrs_y_2_extra);
         /* (rrrrs-s_2) sine of the angle of joint 2 from its reference direction */
         const real rrrrs_s_2 = cosine(rrrrs_y_2_extra);
@@ -9755,7 +9734,7 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs
         const real rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x;
         const real rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x;
         /* (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real rrrrs_yd_2 = V[(6)*w + j];
+        const real rrrrs_yd_2 = V[6*w + j];
         const real rrrrs_S_dot_rest_x = rrrrs_S_dot_x -
             rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
             axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y);
@@ -9880,7 +9859,7 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs
             2*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2;
         /* (rrrrs-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrrrs_ydd_2 = A[(6)*w + j];
+        const real rrrrs_ydd_2 = A[6*w + j];
         const real rrrrs_rel_in_axes4_x = rrrrs_S_ddot_in_axes4_x +
             rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 - rrrrs_bias_in_axes4_x;
         const real rrrrs_rel_in_axes4_y = rrrrs_S_ddot_in_axes4_y - rrrrs_bias_in_axes4_y -
@@ -10071,7 +10050,7 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs
         const real rrrrs_N_1_in_axes1_z = rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_s_2 +
             rrrrs_N_2_in_axes2_y*rrrrs_c_2;
         /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y;
         /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
            point */
@@ -10127,18 +10106,18 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs
 }
 
 INLINE void legs_place_rrrrs(size_t w, size_t count, const real *o, size_t first, real *leg_force,
-    real *drive, verdict *t)
+    real *actuator, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(0)*w + k] = o[0*count + first + k];
-        leg_force[(1)*w + k] = o[1*count + first + k];
-        leg_force[(2)*w + k] = o[2*count + first + k];
-        drive[(0)*w + k] = o[3*count + first + k];
-        drive[(1)*w + k] = o[4*count + first + k];
-        drive[(2)*w + k] = o[5*count + first + k];
-        drive[(6)*w + k] = o[6*count + first + k];
-        drive[(7)*w + k] = o[7*count + first + k];
-        drive[(8)*w + k] = o[8*count + first + k];
+        leg_force[0*w + k] = o[0*count + first + k];
+        leg_force[1*w + k] = o[1*count + first + k];
+        leg_force[2*w + k] = o[2*count + first + k];
+        actuator[0*w + k] = o[3*count + first + k];
+        actuator[1*w + k] = o[4*count + first + k];
+        actuator[2*w + k] = o[5*count + first + k];
+        actuator[6*w + k] = o[6*count + first + k];
+        actuator[(6 + 1)*w + k] = o[7*count + first + k];
+        actuator[(6 + 2)*w + k] = o[8*count + first + k];
         t->unreachable[k] += o[9*count + first + k];
         t->singular[k] += o[10*count + first + k];
     }
@@ -10505,7 +10484,7 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs,
         const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 +
             rrrs_N_2_in_axes2_y*rrrs_c_2;
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y;
         /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
            point */
@@ -10559,40 +10538,42 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs,
 }
 
 INLINE void legs_place_rrrs(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3 + 3*leg)*w + k] = o[0*count + first + k];
-        leg_force[(4 + 3*leg)*w + k] = o[1*count + first + k];
-        leg_force[(5 + 3*leg)*w + k] = o[2*count + first + k];
-        drive[(9 + 6*leg)*w + k] = o[3*count + first + k];
-        drive[(10 + 6*leg)*w + k] = o[4*count + first + k];
-        drive[(11 + 6*leg)*w + k] = o[5*count + first + k];
-        drive[(12 + 6*leg)*w + k] = o[6*count + first + k];
-        drive[(13 + 6*leg)*w + k] = o[7*count + first + k];
-        drive[(14 + 6*leg)*w + k] = o[8*count + first + k];
+        leg_force[(3*(1 + leg))*w + k] = o[0*count + first + k];
+        leg_force[(3*(1 + leg) + 1)*w + k] = o[1*count + first + k];
+        leg_force[(3*(1 + leg) + 2)*w + k] = o[2*count + first + k];
+        actuator[(3*(3 + 2*leg))*w + k] = o[3*count + first + k];
+        actuator[(3*(3 + 2*leg) + 1)*w + k] = o[4*count + first + k];
+        actuator[(3*(3 + 2*leg) + 2)*w + k] = o[5*count + first + k];
+        actuator[(3*(4 + 2*leg))*w + k] = o[6*count + first + k];
+        actuator[(3*(4 + 2*leg) + 1)*w + k] = o[7*count + first + k];
+        actuator[(3*(4 + 2*leg) + 2)*w + k] = o[8*count + first + k];
         t->unreachable[k] += o[9*count + first + k];
         t->singular[k] += o[10*count + first + k];
     }
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
-    real s[24] = {0}, o_rrrrs[11*LEGS(1)] = {0}, o_rrrs[11*LEGS(2)] = {0};
-    clear(drive, 21);
+    real s[24] = {0};
+    real o_rrrrs[11*LEGS(LEGS_OF_rrrrs)] = {0};
+    real o_rrrs[11*LEGS(LEGS_OF_rrrs)] = {0};
+    clear(actuator, 21);
     legs_before(1, X, V, A, s, t);
-    legs_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(1), X, V, A, o_rrrrs);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        legs_place_rrrrs(1, LEGS(1), o_rrrrs, leg, leg_force, drive, t);
+    legs_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), X, V, A, o_rrrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
+        legs_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, leg_force, actuator, t);
     }
-    legs_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(2), o_rrrs);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        legs_place_rrrs(1, LEGS(2), o_rrrs, leg, leg, leg_force, drive, t);
+    legs_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        legs_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, leg_force, actuator, t);
     }
 }
 
-/* ---- potential: 261 mul, 190 add, 6 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -10691,7 +10672,7 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t
         const real t_z = s[2*w + j];
         const real rrrrs_h_3_t_5 = t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y
             + R_zz*rrrrs_platform_point_z - rrrrs_base_point_z;
-        const real rrrrs_y_2_extra = X[(7)*w + j];
+        const real rrrrs_y_2_extra = X[7*w + j];
         const real rrrrs_h_3_t_6 = -sine(rrrrs_y_2_extra);
         const real rrrrs_h_3_t_7 = cosine(rrrrs_y_2_extra);
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -10812,7 +10793,7 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t
             rrrrs_b_in_spec1_z*rrrrs_link1_mass + rrrrs_b_in_spec1_z*rrrrs_link2_mass +
             rrrrs_b_in_spec1_z*rrrrs_link3_mass);
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + -rrrrs_potential_t_11 : -rrrrs_potential_t_11;  /* potential_rrrrs */
+        gather(&terms[0*count + k], add, -rrrrs_potential_t_11);  /* potential_of_legs */
         const real rrrrs_size_t_3 = m->rrrrs_size_t_3[i];
         const real rrrrs_rho2_3_t = m->rrrrs_rho2_3_t[i];
         o[1*count + k] = UNLESS(magnitude(rrrrs_h_3_t_10) > TOLERANCE*TOLERANCE*rrrrs_size_t_3) +
@@ -10964,7 +10945,7 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
             rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
             rrrs_b_in_spec1_z*rrrs_link2_mass);
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_potential_t_8 : rrrs_potential_t_8;  /* potential_t_2 */
+        gather(&terms[1*count + k], add, rrrs_potential_t_8);  /* potential_t_2 */
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         o[1*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
@@ -10985,10 +10966,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
-        const real potential_rrrrs = sums[0*w + k];
+        const real potential_of_legs = sums[0*w + k];
         const real potential_t = s[12*w + k];
         const real potential_t_2 = sums[1*w + k];
-        const real potential_ = potential_rrrrs - potential_t - potential_t_2;
+        const real potential_ = potential_of_legs - potential_t - potential_t_2;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
@@ -10996,27 +10977,31 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0}, sums[2] = {0}, terms_rrrrs[1*LEGS(1)] = {0}, o_rrrrs[2*LEGS(1)] = {0},
-        terms_rrrs[1*LEGS(2)] = {0}, o_rrrs[2*LEGS(2)] = {0};
+    real s[13] = {0};
+    real sums[2] = {0};
+    real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0};
+    real o_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0};
+    real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
+    real o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(1), 0, X, terms_rrrrs, o_rrrrs);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        potential_place_rrrrs(1, LEGS(1), o_rrrrs, leg, t);
+    potential_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, terms_rrrrs, o_rrrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
+        potential_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_rrrrs + n*LEGS(1), 1);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    potential_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        potential_place_rrrs(1, LEGS(2), o_rrrs, leg, t);
+    potential_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        potential_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[1 + n] = total(terms_rrrs + n*LEGS(2), 2);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     potential_after(1, s, sums, potential);
 }
 
-/* ---- condition: 369 mul, 207 add, 12 div, 13 sqrt, 2 trig, every leg counted ---- */
+/* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
     verdict *t)
 {
@@ -11110,7 +11095,7 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t
         const real t_z = s[2*w + j];
         const real rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z;
         /* (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrrs_y_2_extra = X[(7)*w + j];
+        const real rrrrs_y_2_extra = X[7*w + j];
         const real rrrrs_c_2 = -sine(rrrrs_y_2_extra);
         /* (rrrrs-s_2) sine of the angle of joint 2 from its reference direction */
         const real rrrrs_s_2 = cosine(rrrrs_y_2_extra);
@@ -11239,7 +11224,7 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t
         const real rrrrs_w_3_z = rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y -
             axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x);
         /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrrrs_pivot_size = magnitude(rrrrs_rho2_1);
         const real rrrrs_pivot_size_2 = magnitude(rrrrs_rho2_3);
         const real rrrrs_pivot_size_3 = magnitude(rrrrs_v_1_in_axes4_z);
@@ -11269,7 +11254,7 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t
         const real rrrrs_spread_t_4 = rrrrs_spread_t*rrrrs_spread_t +
             rrrrs_spread_t_2*rrrrs_spread_t_2 + rrrrs_spread_t_3*rrrrs_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + rrrrs_spread_t_4 : rrrrs_spread_t_4;  /* spread_rrrrs */
+        gather(&terms[0*count + k], add, rrrrs_spread_t_4);  /* spread_rrrrs */
         /* (rrrrs-w_1) reciprocal vector 1 */
         o[0*count + k] = rrrrs_w_1_x;
         o[1*count + k] = rrrrs_w_1_y;
@@ -11291,7 +11276,7 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t
         /* (rrrrs-w_3) reciprocal vector 2 */
         o[13*count + k] = rrrrs_w_3_t_7;
         /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[14*count + k] = rrrrs_least_pivots;
         o[15*count + k] = rrrrs_disc_3;
         o[18*count + k] = ((rrrrs_w_1_x + (rrrrs_w_1_y + rrrrs_w_1_z)) + ((rrrrs_H_a_1_x +
@@ -11313,22 +11298,22 @@ INLINE void condition_place_rrrrs(size_t w, size_t count, const real *o, size_t 
     real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0)*w + k] = o[0*count + first + k];
-        H[(7)*w + k] = o[1*count + first + k];
-        H[(14)*w + k] = o[2*count + first + k];
-        H[(21)*w + k] = o[3*count + first + k];
-        H[(28)*w + k] = o[4*count + first + k];
-        H[(35)*w + k] = o[5*count + first + k];
-        H[(43)*w + k] = o[6*count + first + k];
-        H[(2)*w + k] = o[7*count + first + k];
-        H[(9)*w + k] = o[8*count + first + k];
-        H[(16)*w + k] = o[9*count + first + k];
-        H[(23)*w + k] = o[10*count + first + k];
-        H[(30)*w + k] = o[11*count + first + k];
-        H[(37)*w + k] = o[12*count + first + k];
-        H[(44)*w + k] = o[13*count + first + k];
-        pivots[(0)*w + k] = o[14*count + first + k];
-        reach[(0)*w + k] = o[15*count + first + k];
+        H[0*NU*w + k] = o[0*count + first + k];
+        H[NU*w + k] = o[1*count + first + k];
+        H[2*NU*w + k] = o[2*count + first + k];
+        H[3*NU*w + k] = o[3*count + first + k];
+        H[4*NU*w + k] = o[4*count + first + k];
+        H[5*NU*w + k] = o[5*count + first + k];
+        H[(6*NU + 1)*w + k] = o[6*count + first + k];
+        H[(0*NU + 2)*w + k] = o[7*count + first + k];
+        H[(NU + 2)*w + k] = o[8*count + first + k];
+        H[(2*NU + 2)*w + k] = o[9*count + first + k];
+        H[(3*NU + 2)*w + k] = o[10*count + first + k];
+        H[(4*NU + 2)*w + k] = o[11*count + first + k];
+        H[(5*NU + 2)*w + k] = o[12*count + first + k];
+        H[(6*NU + 2)*w + k] = o[13*count + first + k];
+        pivots[0*w + k] = o[14*count + first + k];
+        reach[0*w + k] = o[15*count + first + k];
         t->unreachable[k] += o[16*count + first + k];
         t->singular[k] += o[17*count + first + k];
         t->total[k] += o[18*count + first + k];
@@ -11476,7 +11461,7 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrs_w_2_z = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
             axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x);
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrrs_pivot_size = magnitude(rrrs_rho2_1);
         const real rrrs_pivot_size_2 = magnitude(rrrs_rho2_2);
         const real rrrs_pivot_size_3 = magnitude(rrrs_v_1_in_axes3_z);
@@ -11506,7 +11491,7 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrs_spread_t_4 = rrrs_spread_t*rrrs_spread_t + rrrs_spread_t_2*rrrs_spread_t_2
             + rrrs_spread_t_3*rrrs_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_spread_t_4 : rrrs_spread_t_4;  /* spread_rrrs */
+        gather(&terms[1*count + k], add, rrrs_spread_t_4);  /* spread_rrrs */
         /* (rrrs-w_1) reciprocal vector 1 */
         o[0*count + k] = rrrs_w_1_x;
         o[1*count + k] = rrrs_w_1_y;
@@ -11524,7 +11509,7 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
         o[10*count + k] = rrrs_H_a_2_y;
         o[11*count + k] = rrrs_H_a_2_z;
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[12*count + k] = rrrs_least_pivots;
         o[13*count + k] = rrrs_disc_2;
         o[16*count + k] = ((rrrs_w_1_x + (rrrs_w_1_y + rrrs_w_1_z)) + ((rrrs_H_a_1_x +
@@ -11545,18 +11530,18 @@ INLINE void condition_place_rrrs(size_t w, size_t count, const real *o, size_t l
     real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(3 + 2*leg)*w + k] = o[0*count + first + k];
-        H[(10 + 2*leg)*w + k] = o[1*count + first + k];
-        H[(17 + 2*leg)*w + k] = o[2*count + first + k];
-        H[(24 + 2*leg)*w + k] = o[3*count + first + k];
-        H[(31 + 2*leg)*w + k] = o[4*count + first + k];
-        H[(38 + 2*leg)*w + k] = o[5*count + first + k];
-        H[(4 + 2*leg)*w + k] = o[6*count + first + k];
-        H[(11 + 2*leg)*w + k] = o[7*count + first + k];
-        H[(18 + 2*leg)*w + k] = o[8*count + first + k];
-        H[(25 + 2*leg)*w + k] = o[9*count + first + k];
-        H[(32 + 2*leg)*w + k] = o[10*count + first + k];
-        H[(39 + 2*leg)*w + k] = o[11*count + first + k];
+        H[(0*NU + 3 + 2*leg)*w + k] = o[0*count + first + k];
+        H[(NU + 3 + 2*leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 3 + 2*leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + 3 + 2*leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + 3 + 2*leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + 3 + 2*leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + 4 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(NU + 4 + 2*leg)*w + k] = o[7*count + first + k];
+        H[(2*NU + 4 + 2*leg)*w + k] = o[8*count + first + k];
+        H[(3*NU + 4 + 2*leg)*w + k] = o[9*count + first + k];
+        H[(4*NU + 4 + 2*leg)*w + k] = o[10*count + first + k];
+        H[(5*NU + 4 + 2*leg)*w + k] = o[11*count + first + k];
         pivots[(1 + leg)*w + k] = o[12*count + first + k];
         reach[(1 + leg)*w + k] = o[13*count + first + k];
         t->unreachable[k] += o[14*count + first + k];
@@ -11582,23 +11567,27 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[12] = {0}, sums[2] = {0}, terms_rrrrs[1*LEGS(1)] = {0}, o_rrrrs[19*LEGS(1)] = {0},
-        terms_rrrs[1*LEGS(2)] = {0}, o_rrrs[17*LEGS(2)] = {0};
-    clear(H, 49);
+    real s[12] = {0};
+    real sums[2] = {0};
+    real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0};
+    real o_rrrrs[19*LEGS(LEGS_OF_rrrrs)] = {0};
+    real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
+    real o_rrrs[17*LEGS(LEGS_OF_rrrs)] = {0};
+    clear(H, NV*NU);
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(1), 0, X, terms_rrrrs, o_rrrrs);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        condition_place_rrrrs(1, LEGS(1), o_rrrrs, leg, H, pivots, reach, t);
+    condition_legs_rrrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrrs), 0, X, terms_rrrrs, o_rrrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrrs; ++leg) {
+        condition_place_rrrrs(1, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_rrrrs + n*LEGS(1), 1);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
-    condition_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrrs, o_rrrs);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        condition_place_rrrs(1, LEGS(2), o_rrrs, leg, leg, H, pivots, reach, t);
+    condition_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
+        condition_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[1 + n] = total(terms_rrrs + n*LEGS(2), 2);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] += total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     condition_after(1, sums, lengths, t);
 }
@@ -11607,420 +11596,422 @@ INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengt
 
 INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real M[49] = {0};
+    real M[NV*NV] = {0};
     verdict why;
     start(1, &why);
-    check(8, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     M_run(m, X, M, &why);
     if (!is_finite(why.total[0])) {
-        check(49, 1, M, why.overflow);
+        check(NV*NV, 1, M, why.overflow);
     }
     judge(&why, code);
-    copy(49, M, M_out);
+    copy(NV*NV, M, M_out);
     if (*code != OK) {
-        refuse(49, M_out);
+        refuse(NV*NV, M_out);
     }
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[8*LANES], M[49*LANES];
+    real X_in[NQ*LANES], M[NV*NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
     suspect(&why, code);
-    deliver(49, M, M_out);
+    deliver(NV*NV, M, M_out);
 }
 
 INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real Z[7] = {0};
+    real Z[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     Z_run(m, X, V, Z, &why);
     if (!is_finite(why.total[0])) {
-        check(7, 1, Z, why.overflow);
+        check(NV, 1, Z, why.overflow);
     }
     judge(&why, code);
-    copy(7, Z, Z_out);
+    copy(NV, Z, Z_out);
     if (*code != OK) {
-        refuse(7, Z_out);
+        refuse(NV, Z_out);
     }
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[8*LANES], V_in[7*LANES], Z[7*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
-    V = side_by_side(7, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
     suspect(&why, code);
-    deliver(7, Z, Z_out);
+    deliver(NV, Z, Z_out);
 }
 
 INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real H[49] = {0};
+    real H[NV*NU] = {0};
     verdict why;
     start(1, &why);
-    check(8, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H, &why);
     if (!is_finite(why.total[0])) {
-        check(49, 1, H, why.overflow);
+        check(NV*NU, 1, H, why.overflow);
     }
     judge(&why, code);
-    copy(49, H, H_out);
+    copy(NV*NU, H, H_out);
     if (*code != OK) {
-        refuse(49, H_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[8*LANES], H[49*LANES];
+    real X_in[NQ*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
     suspect(&why, code);
-    deliver(49, H, H_out);
+    deliver(NV*NU, H, H_out);
 }
 
 INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real q[10] = {0};
+    real q[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(8, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     if (!is_finite(why.total[0])) {
-        check(10, 1, q, why.overflow);
+        check(NJ, 1, q, why.overflow);
     }
     judge(&why, code);
-    copy(10, q, q_out);
+    copy(NJ, q, q_out);
     if (*code != OK) {
-        refuse(10, q_out);
+        refuse(NJ, q_out);
     }
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[8*LANES], q[10*LANES];
+    real X_in[NQ*LANES], q[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
     suspect(&why, code);
-    deliver(10, q, q_out);
+    deliver(NJ, q, q_out);
 }
 
 INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real qd[10] = {0};
+    real qd[NJ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd, &why);
     if (!is_finite(why.total[0])) {
-        check(10, 1, qd, why.overflow);
+        check(NJ, 1, qd, why.overflow);
     }
     judge(&why, code);
-    copy(10, qd, qd_out);
+    copy(NJ, qd, qd_out);
     if (*code != OK) {
-        refuse(10, qd_out);
+        refuse(NJ, qd_out);
     }
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[8*LANES], V_in[7*LANES], qd[10*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
-    V = side_by_side(7, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
     suspect(&why, code);
-    deliver(10, qd, qd_out);
+    deliver(NJ, qd, qd_out);
 }
 
 INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real qdd[10] = {0};
+    real qdd[NJ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7) + total(A, 7);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
-        check(7, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd, &why);
     if (!is_finite(why.total[0])) {
-        check(10, 1, qdd, why.overflow);
+        check(NJ, 1, qdd, why.overflow);
     }
     judge(&why, code);
-    copy(10, qdd, qdd_out);
+    copy(NJ, qdd, qdd_out);
     if (*code != OK) {
-        refuse(10, qdd_out);
+        refuse(NJ, qdd_out);
     }
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[8*LANES], V_in[7*LANES], A_in[7*LANES], qdd[10*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
-    V = side_by_side(7, V, V_in, why.total);
-    A = side_by_side(7, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
     suspect(&why, code);
-    deliver(10, qdd, qdd_out);
+    deliver(NJ, qdd, qdd_out);
 }
 
 INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real M[49] = {0}, Z[7] = {0}, H[49] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     dynamics_run(m, X, V, M, Z, H, &why);
     if (!is_finite(why.total[0])) {
-        check(49, 1, M, why.overflow);
-        check(7, 1, Z, why.overflow);
-        check(49, 1, H, why.overflow);
+        check(NV*NV, 1, M, why.overflow);
+        check(NV, 1, Z, why.overflow);
+        check(NV*NU, 1, H, why.overflow);
     }
     judge(&why, code);
-    copy(49, M, M_out);
-    copy(7, Z, Z_out);
-    copy(49, H, H_out);
+    copy(NV*NV, M, M_out);
+    copy(NV, Z, Z_out);
+    copy(NV*NU, H, H_out);
     if (*code != OK) {
-        refuse(49, M_out);
-        refuse(7, Z_out);
-        refuse(49, H_out);
+        refuse(NV*NV, M_out);
+        refuse(NV, Z_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[8*LANES], V_in[7*LANES], M[49*LANES], Z[7*LANES], H[49*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
-    V = side_by_side(7, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     suspect(&why, code);
-    deliver(49, M, M_out);
-    deliver(7, Z, Z_out);
-    deliver(49, H, H_out);
+    deliver(NV*NV, M, M_out);
+    deliver(NV, Z, Z_out);
+    deliver(NV*NU, H, H_out);
 }
 
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real wrench_in[6], required[7] = {0}, H[49] = {0}, extend_1[7] = {0}, subtract_2[7] = {0},
-        work[56];
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[7] = {0}, subtract_1[NV] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7) + total(A, 7);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
-        check(7, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 7; ++i) {
-        extend_1[i] = i < 6 ? wrench[i] : 0;
+        extend_1[i] = i < NW ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 7; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    set_matrix(7, 1, H, work);
-    solve_state(7, subtract_2, work, tau_out, why.singular);
-    check(7, 1, tau_out, why.overflow);
+    set_matrix(NV, 1, H, work);
+    solve_state(NV, subtract_1, work, tau_out, why.singular);
+    check(NU, 1, tau_out, why.overflow);
     judge(&why, code);
     if (*code != OK) {
-        refuse(7, tau_out);
+        refuse(NU, tau_out);
     }
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[8*LANES], V_in[7*LANES], A_in[7*LANES], wrench_in[6*LANES], required[7*LANES],
-        H[49*LANES], extend_1[7*LANES], subtract_2[7*LANES], tau[7*LANES], work[56*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
+        H[NV*NU*LANES], extend_1[7*LANES], subtract_1[NV*LANES], tau[NU*LANES],
+        work[NV*PADDED(NV)*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
-    V = side_by_side(7, V, V_in, why.total);
-    A = side_by_side(7, A, A_in, why.total);
-    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 7*LANES; ++i) {
-        extend_1[i] = i < 6*LANES ? wrench[i] : 0;
+        extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 7*LANES; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    set_matrix(7, LANES, H, work);
-    solve(7, LANES, subtract_2, work, tau, why.singular);
-    add_up(7, tau, why.total);
+    set_matrix(NV, LANES, H, work);
+    solve(NV, LANES, subtract_1, work, tau, why.singular);
+    add_up(NU, tau, why.total);
     suspect(&why, code);
-    deliver(7, tau, tau_out);
+    deliver(NU, tau, tau_out);
 }
 
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, int *code)
 {
-    real wrench_in[6], M[49] = {0}, Z[7] = {0}, H[49] = {0}, times_1[7] = {0}, extend_2[7] = {0},
-        add_3[7] = {0}, subtract_4[7] = {0}, work[56];
+    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[7] =
+        {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7) + total(tau, 7);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
-        check(7, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
-    product(7, 7, 1, 1, H, tau, times_1);
+    product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < 7; ++i) {
-        extend_2[i] = i < 6 ? wrench[i] : 0;
+        extend_1[i] = i < NW ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 7; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    for (size_t i = 0; i < NV; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 7; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    set_matrix(7, 1, M, work);
-    solve_state(7, subtract_4, work, A_out, why.singular);
-    check(7, 1, A_out, why.overflow);
+    set_matrix(NV, 1, M, work);
+    solve_state(NV, subtract_1, work, A_out, why.singular);
+    check(NV, 1, A_out, why.overflow);
     judge(&why, code);
     if (*code != OK) {
-        refuse(7, A_out);
+        refuse(NV, A_out);
     }
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[8*LANES], V_in[7*LANES], tau_in[7*LANES], wrench_in[6*LANES], M[49*LANES], Z[7*LANES],
-        H[49*LANES], times_1[7*LANES] = {0}, extend_2[7*LANES], add_3[7*LANES], subtract_4[7*LANES],
-        A[7*LANES], work[56*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
+        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, extend_1[7*LANES], add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES], work[NV*PADDED(NV)*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
-    V = side_by_side(7, V, V_in, why.total);
-    tau = side_by_side(7, tau, tau_in, why.total);
-    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    product(7, 7, 1, LANES, H, tau, times_1);
+    product(NV, NU, 1, LANES, H, tau, times_1);
     for (size_t i = 0; i < 7*LANES; ++i) {
-        extend_2[i] = i < 6*LANES ? wrench[i] : 0;
+        extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 7*LANES; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 7*LANES; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    set_matrix(7, LANES, M, work);
-    solve(7, LANES, subtract_4, work, A, why.singular);
-    add_up(7, A, why.total);
+    set_matrix(NV, LANES, M, work);
+    solve(NV, LANES, subtract_1, work, A, why.singular);
+    add_up(NV, A, why.total);
     suspect(&why, code);
-    deliver(7, A, A_out);
+    deliver(NV, A, A_out);
 }
 
 INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, A, why.invalid);
+    check(NV, 1, A, why.invalid);
     const real *const completed = A;
-    check(7, 1, completed, why.overflow);
+    check(NV, 1, completed, why.overflow);
     judge(&why, code);
-    copy(7, completed, completed_out);
+    copy(NV, completed, completed_out);
     if (*code != OK) {
-        refuse(7, completed_out);
+        refuse(NV, completed_out);
     }
 }
 
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t places_0[] = {0, 0, 0, 1, 1, 2, 2};
-    real wrench_in[6], required[7] = {0}, H[49] = {0}, extend_1[7] = {0}, subtract_2[7] = {0},
-        solve_3[7] = {0}, leg_force[9] = {0}, drive[21] = {0}, forces[9] = {0}, work[56];
+    static const size_t places_forces[] = {0, 0, 0, 1, 1, 2, 2};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[7] = {0}, subtract_1[NV] = {0},
+        solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[21] = {0}, forces[NL*NL] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7) + total(A, 7);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
-        check(7, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 7; ++i) {
-        extend_1[i] = i < 6 ? wrench[i] : 0;
+        extend_1[i] = i < NW ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 7; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    set_matrix(7, 1, H, work);
-    solve_state(7, subtract_2, work, solve_3, why.singular);
-    legs_run(m, X, V, A, leg_force, drive, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    set_matrix(NV, 1, H, work);
+    solve_state(NV, subtract_1, work, solve_1, why.singular);
+    legs_run(m, X, V, A, leg_force, actuator, &why);
+    for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
-    add_forces(7, 3, 1, places_0, solve_3, drive, forces);
-    check(9, 1, forces, why.overflow);
+    add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
+    check(NL*NL, 1, forces, why.overflow);
     judge(&why, code);
-    copy(9, forces, forces_out);
+    copy(NL*NL, forces, forces_out);
     if (*code != OK) {
-        refuse(9, forces_out);
+        refuse(NL*NL, forces_out);
     }
 }
 
 INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
-    real M[49] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
-    half_form(7, 1, V, M, kinetic);
+    half_form(NV, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
@@ -12036,12 +12027,12 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
 INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
-    static const size_t places_0[] = {3, 4, 5, 6};
-    real length_in[1], H[49] = {0}, lengths[2] = {0}, legs[3] = {0}, reach[3] = {0},
-        choose_length_1[1] = {0}, divide_rows_2[49] = {0}, sigma[7] = {0};
+    static const size_t places_divide_rows_1[] = {3, 4, 5, 6};
+    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
-    check(8, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -12049,77 +12040,76 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 49; ++i) {
-        divide_rows_2[i] = H[i];
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
     }
-    divide_rows(4, 7, 1, places_0, choose_length_1, divide_rows_2);
-    singular_values(7, 7, divide_rows_2, sigma);
+    divide_rows(4, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(3, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(7, 1, sigma, why.overflow);
+    check(NV, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(7, sigma, sigma_out);
-    copy(3, legs, legs_out);
+    copy(NV, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(7, sigma_out);
-        refuse(3, legs_out);
+        refuse(NV, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 4, 5, 7, 8};
-    static const size_t places_1[] = {0, 1, 2, 3, 4, 5, 6};
-    real q[10] = {0}, take_1[7] = {0}, subtract_2[7] = {0}, gap[7] = {0};
+    static const size_t places_gap[] = {0, 1, 2, 3, 4, 5, 6};
+    real q[NJ] = {0}, take_1[7] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(q_actuated, 7);
+    const real total_in = total(X, NQ) + total(q_actuated, NU);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, q_actuated, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(7, 1, places_0, q, take_1);
-    for (size_t i = 0; i < 7; ++i) {
-        subtract_2[i] = q_actuated[i] - take_1[i];
+    take(7, 1, hybrid_3rrrs_redundant_ACTUATED, q, take_1);
+    for (size_t i = 0; i < NU; ++i) {
+        subtract_1[i] = q_actuated[i] - take_1[i];
     }
-    for (size_t i = 0; i < 7; ++i) {
-        gap[i] = subtract_2[i];
+    for (size_t i = 0; i < NU; ++i) {
+        gap[i] = subtract_1[i];
     }
-    wrap_turns(7, 1, places_1, gap);
-    check(7, 1, gap, why.overflow);
+    wrap_turns(NU, 1, places_gap, gap);
+    check(NU, 1, gap, why.overflow);
     judge(&why, code);
-    copy(7, gap, gap_out);
+    copy(NU, gap, gap_out);
     if (*code != OK) {
-        refuse(7, gap_out);
+        refuse(NU, gap_out);
     }
 }
 
 static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[49] = {0};
+    real slope[NV*NU] = {0};
     verdict why;
     start(1, &why);
-    check(8, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, slope, &why);
     if (!is_finite(why.total[0])) {
-        check(49, 1, slope, why.overflow);
+        check(NV*NU, 1, slope, why.overflow);
     }
     judge(&why, code);
-    copy(49, slope, slope_out);
+    copy(NV*NU, slope, slope_out);
     if (*code != OK) {
-        refuse(49, slope_out);
+        refuse(NV*NU, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
-    enum { N = 7, NV = 7, TRIALS = 12 };
+    enum { N = NU, TRIALS = 12 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[8] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     mismatch_one(m, found, q_actuated, gap, &code);
@@ -12162,30 +12152,30 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
-    real X[8] = {0};
+    real X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(q_actuated, 7) + total(X0, 8);
+    const real total_in = total(q_actuated, NU) + total(X0, NQ);
     if (!is_finite(total_in)) {
-        check(7, 1, q_actuated, why.invalid);
-        check(8, 1, X0, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
+        check(NQ, 1, X0, why.invalid);
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(8, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(8, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(8, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
-    real subtract_1[7] = {0};
+    real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, V, why.invalid);
-    for (size_t i = 0; i < 7; ++i) {
+    check(NV, 1, V, why.invalid);
+    for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
@@ -12200,85 +12190,85 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
     *code)
 {
-    real M[49] = {0}, momentum[7] = {0};
+    real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
-    product(7, 7, 1, 1, M, V, momentum);
-    check(7, 1, momentum, why.overflow);
+    product(NV, NV, 1, 1, M, V, momentum);
+    check(NV, 1, momentum, why.overflow);
     judge(&why, code);
-    copy(7, momentum, momentum_out);
+    copy(NV, momentum, momentum_out);
     if (*code != OK) {
-        refuse(7, momentum_out);
+        refuse(NV, momentum_out);
     }
 }
 
 INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
     int *code)
 {
-    real X_in[8*LANES], V_in[7*LANES], M[49*LANES], momentum[7*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
-    V = side_by_side(7, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     M_run_lanes(m, X, M, &why);
-    product(7, 7, 1, LANES, M, V, momentum);
-    add_up(7, momentum, why.total);
+    product(NV, NV, 1, LANES, M, V, momentum);
+    add_up(NV, momentum, why.total);
     suspect(&why, code);
-    deliver(7, momentum, momentum_out);
+    deliver(NV, momentum, momentum_out);
 }
 
 INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
-    real q[10] = {0}, margins[10] = {0};
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+    real q[NJ] = {0}, margins[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(8, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 10; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
-    unlimited(10, 10, 1, places_0, margins, why.overflow);
+    unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     judge(&why, code);
-    copy(10, margins, margins_out);
+    copy(NJ, margins, margins_out);
     if (*code != OK) {
-        refuse(10, margins_out);
+        refuse(NJ, margins_out);
     }
 }
 
 INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
-    real X_in[8*LANES], q[10*LANES], margins[10*LANES];
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 10*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         margins[i] = q[i];
     }
-    unlimited(10, 10, LANES, places_0, margins, why.invalid);
+    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
     suspect(&why, code);
-    deliver(10, margins, margins_out);
+    deliver(NJ, margins, margins_out);
 }
 
 INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real q[10] = {0}, subtract_1[10] = {0}, within[1] = {0};
+    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
     start(1, &why);
-    check(8, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 10; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(10, 1, subtract_1, within, why.overflow);
+    not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     judge(&why, code);
     copy(1, within, within_out);
@@ -12289,15 +12279,15 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
 
 INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real X_in[8*LANES], q[10*LANES], subtract_1[10*LANES], within[1*LANES] = {0};
+    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 10*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(10, LANES, subtract_1, within, why.invalid);
+    not_negative(NJ, LANES, subtract_1, within, why.invalid);
     add_up(1, within, why.total);
     suspect(&why, code);
     deliver(1, within, within_out);
@@ -12305,129 +12295,123 @@ INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_o
 
 INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 4, 5, 7, 8};
-    real q_of_inverse_kinematics[10] = {0}, q[7] = {0};
+    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
     start(1, &why);
-    check(8, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
-    take(7, 1, places_0, q_of_inverse_kinematics, q);
-    check(7, 1, q, why.overflow);
+    take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, q_of_inverse_kinematics, q);
+    check(NU, 1, q, why.overflow);
     judge(&why, code);
-    copy(7, q, q_out);
+    copy(NU, q, q_out);
     if (*code != OK) {
-        refuse(7, q_out);
+        refuse(NU, q_out);
     }
 }
 
 INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 4, 5, 7, 8};
-    real X_in[8*LANES], q_of_inverse_kinematics[10*LANES], q[7*LANES] = {0};
+    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(7, 1*LANES, places_0, q_of_inverse_kinematics, q);
-    add_up(7, q, why.total);
+    take(NU, LANES, hybrid_3rrrs_redundant_ACTUATED, q_of_inverse_kinematics, q);
+    add_up(NU, q, why.total);
     suspect(&why, code);
-    deliver(7, q, q_out);
+    deliver(NU, q, q_out);
 }
 
 INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 4, 5, 7, 8};
-    real qd_of_joint_rates[10] = {0}, qd[7] = {0};
+    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
-    take(7, 1, places_0, qd_of_joint_rates, qd);
-    check(7, 1, qd, why.overflow);
+    take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, qd_of_joint_rates, qd);
+    check(NU, 1, qd, why.overflow);
     judge(&why, code);
-    copy(7, qd, qd_out);
+    copy(NU, qd, qd_out);
     if (*code != OK) {
-        refuse(7, qd_out);
+        refuse(NU, qd_out);
     }
 }
 
 INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 4, 5, 7, 8};
-    real X_in[8*LANES], V_in[7*LANES], qd_of_joint_rates[10*LANES], qd[7*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
-    V = side_by_side(7, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(7, 1*LANES, places_0, qd_of_joint_rates, qd);
-    add_up(7, qd, why.total);
+    take(NU, LANES, hybrid_3rrrs_redundant_ACTUATED, qd_of_joint_rates, qd);
+    add_up(NU, qd, why.total);
     suspect(&why, code);
-    deliver(7, qd, qd_out);
+    deliver(NU, qd, qd_out);
 }
 
 INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 4, 5, 7, 8};
-    real qdd_of_joint_accelerations[10] = {0}, qdd[7] = {0};
+    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7) + total(A, 7);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
-        check(7, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(7, 1, places_0, qdd_of_joint_accelerations, qdd);
-    check(7, 1, qdd, why.overflow);
+    take(NU, 1, hybrid_3rrrs_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
+    check(NU, 1, qdd, why.overflow);
     judge(&why, code);
-    copy(7, qdd, qdd_out);
+    copy(NU, qdd, qdd_out);
     if (*code != OK) {
-        refuse(7, qdd_out);
+        refuse(NU, qdd_out);
     }
 }
 
 INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 4, 5, 7, 8};
-    real X_in[8*LANES], V_in[7*LANES], A_in[7*LANES], qdd_of_joint_accelerations[10*LANES],
-        qdd[7*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
+        qdd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
-    V = side_by_side(7, V, V_in, why.total);
-    A = side_by_side(7, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(7, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
-    add_up(7, qdd, why.total);
+    take(NU, LANES, hybrid_3rrrs_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
+    add_up(NU, qdd, why.total);
     suspect(&why, code);
-    deliver(7, qdd, qdd_out);
+    deliver(NU, qdd, qdd_out);
 }
 
 INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real H[49] = {0}, times_1[7] = {0}, power[1] = {0};
+    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7) + total(tau, 7);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
-        check(7, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
     H_run(m, X, H, &why);
-    product(7, 7, 1, 1, H, tau, times_1);
-    inner(7, 1, times_1, V, power);
+    product(NV, NU, 1, 1, H, tau, times_1);
+    inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     judge(&why, code);
     copy(1, power, power_out);
@@ -12439,16 +12423,16 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
 INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real X_in[8*LANES], V_in[7*LANES], tau_in[7*LANES], H[49*LANES], times_1[7*LANES] = {0},
-        power[1*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        power[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(8, X, X_in, why.total);
-    V = side_by_side(7, V, V_in, why.total);
-    tau = side_by_side(7, tau, tau_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
     H_run_lanes(m, X, H, &why);
-    product(7, 7, 1, LANES, H, tau, times_1);
-    inner(7, LANES, times_1, V, power);
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    inner(NV, LANES, times_1, V, power);
     add_up(1, power, why.total);
     suspect(&why, code);
     deliver(1, power, power_out);
@@ -12459,7 +12443,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     real R[9] = {0};
     verdict why;
     start(1, &why);
-    check(8, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     const real *const take_1 = X + 3;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
@@ -12472,7 +12456,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
 
 INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0}, X[8] = {0};
+    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 3) + total(R, 9);
@@ -12481,46 +12465,46 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
         check(9, 1, R, why.invalid);
     }
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
-    for (size_t i = 0; i < 8; ++i) {
-        X[i] = i < 7 ? join_2[i] : 0;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
+    for (size_t i = 0; i < NQ; ++i) {
+        X[i] = i < 7 ? join_1[i] : 0;
     }
-    check(8, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(8, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(8, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
-    real quaternion_rate_3[4] = {0}, join_5[7] = {0}, X_dot[8] = {0};
+    real quaternion_rate_1[4] = {0}, join_1[7] = {0}, X_dot[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(V, 7);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     const real *const take_1 = V + 3;
     const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_3);
-    const real *const take_4 = V;
-    beside(1, 3, 4, take_4, quaternion_rate_3, join_5);
-    const real *const take_6 = V + 6;
-    beside(1, 7, 1, join_5, take_6, X_dot);
-    check(8, 1, X_dot, why.overflow);
+    quaternion_rate(take_2, take_1, quaternion_rate_1);
+    const real *const take_3 = V;
+    beside(1, 3, 4, take_3, quaternion_rate_1, join_1);
+    const real *const take_4 = V + 6;
+    beside(1, 7, 1, join_1, take_4, X_dot);
+    check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
-    copy(8, X_dot, X_dot_out);
+    copy(NQ, X_dot, X_dot_out);
     if (*code != OK) {
-        refuse(8, X_dot_out);
+        refuse(NQ, X_dot_out);
     }
 }
 
 INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0}, X[8] = {0};
+    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 3) + total(rpy, 3);
@@ -12529,28 +12513,28 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
         check(3, 1, rpy, why.invalid);
     }
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
-    for (size_t i = 0; i < 8; ++i) {
-        X[i] = i < 7 ? join_2[i] : 0;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
+    for (size_t i = 0; i < NQ; ++i) {
+        X[i] = i < 7 ? join_1[i] : 0;
     }
-    check(8, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(8, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(8, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
-    real turn_quaternion_7[4] = {0}, add_8[3] = {0}, add_9[1] = {0}, join_10[7] = {0}, X_moved[8] =
+    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[1] = {0}, join_1[7] = {0}, X_moved[NQ] =
         {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 8) + total(step, 7);
+    const real total_in = total(X, NQ) + total(step, NV);
     if (!is_finite(total_in)) {
-        check(8, 1, X, why.invalid);
-        check(7, 1, step, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, step, why.invalid);
     }
     const real *const take_1 = X;
     const real *const take_2 = X + 3;
@@ -12558,33 +12542,33 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     const real *const take_4 = step;
     const real *const take_5 = step + 3;
     const real *const take_6 = step + 6;
-    turn_quaternion(take_2, take_5, turn_quaternion_7);
+    turn_quaternion(take_2, take_5, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_8[i] = take_1[i] + take_4[i];
+        add_1[i] = take_1[i] + take_4[i];
     }
     for (size_t i = 0; i < 1; ++i) {
-        add_9[i] = take_3[i] + take_6[i];
+        add_2[i] = take_3[i] + take_6[i];
     }
-    beside(1, 3, 4, add_8, turn_quaternion_7, join_10);
-    beside(1, 7, 1, join_10, add_9, X_moved);
-    check(8, 1, X_moved, why.overflow);
+    beside(1, 3, 4, add_1, turn_quaternion_1, join_1);
+    beside(1, 7, 1, join_1, add_2, X_moved);
+    check(NQ, 1, X_moved, why.overflow);
     judge(&why, code);
-    copy(8, X_moved, X_moved_out);
+    copy(NQ, X_moved, X_moved_out);
     if (*code != OK) {
-        refuse(8, X_moved_out);
+        refuse(NQ, X_moved_out);
     }
 }
 
 INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
-    real turn_between_7[3] = {0}, subtract_8[3] = {0}, subtract_9[1] = {0}, join_10[6] = {0}, step[7]
+    real turn_between_1[3] = {0}, subtract_1[3] = {0}, subtract_2[1] = {0}, join_1[6] = {0}, step[NV]
         = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 8) + total(X1, 8);
+    const real total_in = total(X0, NQ) + total(X1, NQ);
     if (!is_finite(total_in)) {
-        check(8, 1, X0, why.invalid);
-        check(8, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
     }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
@@ -12592,34 +12576,34 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     const real *const take_4 = X1;
     const real *const take_5 = X1 + 3;
     const real *const take_6 = X1 + 7;
-    turn_between(take_2, take_5, turn_between_7);
+    turn_between(take_2, take_5, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_8[i] = take_4[i] - take_1[i];
+        subtract_1[i] = take_4[i] - take_1[i];
     }
     for (size_t i = 0; i < 1; ++i) {
-        subtract_9[i] = take_6[i] - take_3[i];
+        subtract_2[i] = take_6[i] - take_3[i];
     }
-    beside(1, 3, 3, subtract_8, turn_between_7, join_10);
-    beside(1, 6, 1, join_10, subtract_9, step);
-    check(7, 1, step, why.overflow);
+    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    beside(1, 6, 1, join_1, subtract_2, step);
+    check(NV, 1, step, why.overflow);
     judge(&why, code);
-    copy(7, step, step_out);
+    copy(NV, step, step_out);
     if (*code != OK) {
-        refuse(7, step_out);
+        refuse(NV, step_out);
     }
 }
 
 INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    real turn_between_7[3] = {0}, subtract_8[3] = {0}, subtract_9[1] = {0}, join_10[6] = {0},
-        join_11[7] = {0}, scale_12[7] = {0}, turn_quaternion_19[4] = {0}, add_20[3] = {0}, add_21[1] =
-        {0}, join_22[7] = {0}, X[8] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] = {0}, subtract_2[1] = {0}, join_1[6] = {0}, join_2[7]
+        = {0}, scale_1[7] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[1] = {0}, join_3[7]
+        = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 8) + total(X1, 8) + total(s, 1);
+    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
     if (!is_finite(total_in)) {
-        check(8, 1, X0, why.invalid);
-        check(8, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
     const real *const take_1 = X0;
@@ -12628,38 +12612,38 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     const real *const take_4 = X1;
     const real *const take_5 = X1 + 3;
     const real *const take_6 = X1 + 7;
-    turn_between(take_2, take_5, turn_between_7);
+    turn_between(take_2, take_5, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_8[i] = take_4[i] - take_1[i];
+        subtract_1[i] = take_4[i] - take_1[i];
     }
     for (size_t i = 0; i < 1; ++i) {
-        subtract_9[i] = take_6[i] - take_3[i];
+        subtract_2[i] = take_6[i] - take_3[i];
     }
-    beside(1, 3, 3, subtract_8, turn_between_7, join_10);
-    beside(1, 6, 1, join_10, subtract_9, join_11);
+    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    beside(1, 6, 1, join_1, subtract_2, join_2);
     for (size_t i = 0; i < 7; ++i) {
-        scale_12[i] = join_11[i]*s[i%(1)];
+        scale_1[i] = join_2[i]*s[i%(1)];
     }
-    const real *const take_13 = X0;
-    const real *const take_14 = X0 + 3;
-    const real *const take_15 = X0 + 7;
-    const real *const take_16 = scale_12;
-    const real *const take_17 = scale_12 + 3;
-    const real *const take_18 = scale_12 + 6;
-    turn_quaternion(take_14, take_17, turn_quaternion_19);
+    const real *const take_7 = X0;
+    const real *const take_8 = X0 + 3;
+    const real *const take_9 = X0 + 7;
+    const real *const take_10 = scale_1;
+    const real *const take_11 = scale_1 + 3;
+    const real *const take_12 = scale_1 + 6;
+    turn_quaternion(take_8, take_11, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_20[i] = take_13[i] + take_16[i];
+        add_1[i] = take_7[i] + take_10[i];
     }
     for (size_t i = 0; i < 1; ++i) {
-        add_21[i] = take_15[i] + take_18[i];
+        add_2[i] = take_9[i] + take_12[i];
     }
-    beside(1, 3, 4, add_20, turn_quaternion_19, join_22);
-    beside(1, 7, 1, join_22, add_21, X);
-    check(8, 1, X, why.overflow);
+    beside(1, 3, 4, add_1, turn_quaternion_1, join_3);
+    beside(1, 7, 1, join_3, add_2, X);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(8, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(8, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -12679,16 +12663,16 @@ size_t hybrid_3rrrs_redundant_M_batch(const hybrid_3rrrs_redundant_model *model,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_lanes(model, X + 8*i, M + 49*i, codes);
+        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_M(model, X + 8*(i + k), M + 49*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_M(model, X + 8*i, M + 49*i);
+        const int code = hybrid_3rrrs_redundant_M(model, X + NQ*i, M + NV*NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -12710,16 +12694,16 @@ size_t hybrid_3rrrs_redundant_Z_batch(const hybrid_3rrrs_redundant_model *model,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_lanes(model, X + 8*i, V + 7*i, Z + 7*i, codes);
+        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_Z(model, X + 8*(i + k), V + 7*(i + k), Z + 7*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_Z(model, X + 8*i, V + 7*i, Z + 7*i);
+        const int code = hybrid_3rrrs_redundant_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -12739,16 +12723,16 @@ size_t hybrid_3rrrs_redundant_H_batch(const hybrid_3rrrs_redundant_model *model,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_lanes(model, X + 8*i, H + 49*i, codes);
+        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_H(model, X + 8*(i + k), H + 49*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_H(model, X + 8*i, H + 49*i);
+        const int code = hybrid_3rrrs_redundant_H(model, X + NQ*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -12768,16 +12752,16 @@ size_t hybrid_3rrrs_redundant_inverse_kinematics_batch(const hybrid_3rrrs_redund
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_lanes(model, X + 8*i, q + 10*i, codes);
+        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_inverse_kinematics(model, X + 8*(i + k), q + 10*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_inverse_kinematics(model, X + 8*i, q + 10*i);
+        const int code = hybrid_3rrrs_redundant_inverse_kinematics(model, X + NQ*i, q + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -12799,17 +12783,17 @@ size_t hybrid_3rrrs_redundant_joint_rates_batch(const hybrid_3rrrs_redundant_mod
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_lanes(model, X + 8*i, V + 7*i, rates + 10*i, codes);
+        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_joint_rates(model, X + 8*(i + k), V + 7*(i + k), rates + 10*(i +
-                    k));
+                codes[k] = hybrid_3rrrs_redundant_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i
+                    + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_joint_rates(model, X + 8*i, V + 7*i, rates + 10*i);
+        const int code = hybrid_3rrrs_redundant_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -12831,18 +12815,18 @@ size_t hybrid_3rrrs_redundant_joint_accelerations_batch(const hybrid_3rrrs_redun
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_lanes(model, X + 8*i, V + 7*i, A + 7*i, accelerations + 10*i, codes);
+        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_joint_accelerations(model, X + 8*(i + k), V + 7*(i + k), A +
-                    7*(i + k), accelerations + 10*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A +
+                    NV*(i + k), accelerations + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_joint_accelerations(model, X + 8*i, V + 7*i, A + 7*i,
-            accelerations + 10*i);
+        const int code = hybrid_3rrrs_redundant_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -12866,18 +12850,18 @@ size_t hybrid_3rrrs_redundant_dynamics_batch(const hybrid_3rrrs_redundant_model 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_lanes(model, X + 8*i, V + 7*i, M + 49*i, Z + 7*i, H + 49*i, codes);
+        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_dynamics(model, X + 8*(i + k), V + 7*(i + k), M + 49*(i + k), Z
-                    + 7*(i + k), H + 49*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i +
+                    k), Z + NV*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_dynamics(model, X + 8*i, V + 7*i, M + 49*i, Z + 7*i, H +
-            49*i);
+        const int code = hybrid_3rrrs_redundant_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i,
+            H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -12901,19 +12885,19 @@ size_t hybrid_3rrrs_redundant_inverse_dynamics_batch(const hybrid_3rrrs_redundan
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_lanes(model, X + 8*i, V + 7*i, A + 7*i, wrench ? wrench + 6*i : NULL, tau + 7*i,
-            codes);
+        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+            NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_inverse_dynamics(model, X + 8*(i + k), V + 7*(i + k), A + 7*(i +
-                    k), wrench ? wrench + 6*(i + k) : NULL, tau + 7*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A +
+                    NV*(i + k), wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_inverse_dynamics(model, X + 8*i, V + 7*i, A + 7*i, wrench
-            ? wrench + 6*i : NULL, tau + 7*i);
+        const int code = hybrid_3rrrs_redundant_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i,
+            wrench ? wrench + NW*i : NULL, tau + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -12937,19 +12921,19 @@ size_t hybrid_3rrrs_redundant_forward_dynamics_batch(const hybrid_3rrrs_redundan
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_lanes(model, X + 8*i, V + 7*i, tau + 7*i, wrench ? wrench + 6*i : NULL, A + 7*i,
-            codes);
+        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+            NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_forward_dynamics(model, X + 8*(i + k), V + 7*(i + k), tau + 7*(i
-                    + k), wrench ? wrench + 6*(i + k) : NULL, A + 7*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau +
+                    NU*(i + k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_forward_dynamics(model, X + 8*i, V + 7*i, tau + 7*i,
-            wrench ? wrench + 6*i : NULL, A + 7*i);
+        const int code = hybrid_3rrrs_redundant_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i,
+            wrench ? wrench + NW*i : NULL, A + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -12976,8 +12960,8 @@ size_t hybrid_3rrrs_redundant_complete_acceleration_batch(const hybrid_3rrrs_red
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_complete_acceleration(model, X + 8*i, V + 7*i, A + 7*i,
-            wrench ? wrench + 6*i : NULL, completed + 7*i);
+        const int code = hybrid_3rrrs_redundant_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i,
+            wrench ? wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13000,8 +12984,8 @@ size_t hybrid_3rrrs_redundant_leg_reactions_batch(const hybrid_3rrrs_redundant_m
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_leg_reactions(model, X + 8*i, V + 7*i, A + 7*i, wrench ?
-            wrench + 6*i : NULL, forces + 9*i);
+        const int code = hybrid_3rrrs_redundant_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench
+            ? wrench + NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13022,8 +13006,8 @@ size_t hybrid_3rrrs_redundant_energy_batch(const hybrid_3rrrs_redundant_model *m
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_energy(model, X + 8*i, V + 7*i, kinetic + 1*i, potential +
-            1*i);
+        const int code = hybrid_3rrrs_redundant_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential +
+            i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13044,7 +13028,7 @@ size_t hybrid_3rrrs_redundant_condition_batch(const hybrid_3rrrs_redundant_model
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_condition(model, X + 8*i, sigma + 7*i, legs + 3*i);
+        const int code = hybrid_3rrrs_redundant_condition(model, X + NQ*i, sigma + 7*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13065,8 +13049,8 @@ size_t hybrid_3rrrs_redundant_forward_kinematics_batch(const hybrid_3rrrs_redund
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_forward_kinematics(model, q_actuated + 7*i, X0 + 8*i, X +
-            8*i);
+        const int code = hybrid_3rrrs_redundant_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X
+            + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13089,7 +13073,7 @@ size_t hybrid_3rrrs_redundant_dissipation_batch(const hybrid_3rrrs_redundant_mod
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_dissipation(model, X + 8*i, V + 7*i, dissipation + 1*i);
+        const int code = hybrid_3rrrs_redundant_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13111,17 +13095,17 @@ size_t hybrid_3rrrs_redundant_momentum_batch(const hybrid_3rrrs_redundant_model 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_lanes(model, X + 8*i, V + 7*i, momentum + 7*i, codes);
+        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_momentum(model, X + 8*(i + k), V + 7*(i + k), momentum + 7*(i +
-                    k));
+                codes[k] = hybrid_3rrrs_redundant_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i
+                    + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_momentum(model, X + 8*i, V + 7*i, momentum + 7*i);
+        const int code = hybrid_3rrrs_redundant_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13142,16 +13126,16 @@ size_t hybrid_3rrrs_redundant_joint_margins_batch(const hybrid_3rrrs_redundant_m
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_margins_lanes(model, X + 8*i, margins + 10*i, codes);
+        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_joint_margins(model, X + 8*(i + k), margins + 10*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_joint_margins(model, X + 8*i, margins + 10*i);
+        const int code = hybrid_3rrrs_redundant_joint_margins(model, X + NQ*i, margins + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13172,16 +13156,16 @@ size_t hybrid_3rrrs_redundant_within_limits_batch(const hybrid_3rrrs_redundant_m
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        within_limits_lanes(model, X + 8*i, within + 1*i, codes);
+        within_limits_lanes(model, X + NQ*i, within + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_within_limits(model, X + 8*(i + k), within + 1*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_within_limits(model, X + 8*i, within + 1*i);
+        const int code = hybrid_3rrrs_redundant_within_limits(model, X + NQ*i, within + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13201,16 +13185,16 @@ size_t hybrid_3rrrs_redundant_actuator_positions_batch(const hybrid_3rrrs_redund
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_lanes(model, X + 8*i, q + 7*i, codes);
+        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_actuator_positions(model, X + 8*(i + k), q + 7*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_actuator_positions(model, X + 8*i, q + 7*i);
+        const int code = hybrid_3rrrs_redundant_actuator_positions(model, X + NQ*i, q + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13232,17 +13216,17 @@ size_t hybrid_3rrrs_redundant_actuator_rates_batch(const hybrid_3rrrs_redundant_
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_lanes(model, X + 8*i, V + 7*i, rates + 7*i, codes);
+        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_actuator_rates(model, X + 8*(i + k), V + 7*(i + k), rates + 7*(i
-                    + k));
+                codes[k] = hybrid_3rrrs_redundant_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates +
+                    NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_actuator_rates(model, X + 8*i, V + 7*i, rates + 7*i);
+        const int code = hybrid_3rrrs_redundant_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13264,18 +13248,18 @@ size_t hybrid_3rrrs_redundant_actuator_accelerations_batch(const hybrid_3rrrs_re
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_lanes(model, X + 8*i, V + 7*i, A + 7*i, accelerations + 7*i, codes);
+        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_actuator_accelerations(model, X + 8*(i + k), V + 7*(i + k), A +
-                    7*(i + k), accelerations + 7*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A
+                    + NV*(i + k), accelerations + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_actuator_accelerations(model, X + 8*i, V + 7*i, A + 7*i,
-            accelerations + 7*i);
+        const int code = hybrid_3rrrs_redundant_actuator_accelerations(model, X + NQ*i, V + NV*i, A +
+            NV*i, accelerations + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13297,17 +13281,17 @@ size_t hybrid_3rrrs_redundant_power_batch(const hybrid_3rrrs_redundant_model *mo
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_lanes(model, X + 8*i, V + 7*i, tau + 7*i, power + 1*i, codes);
+        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = hybrid_3rrrs_redundant_power(model, X + 8*(i + k), V + 7*(i + k), tau + 7*(i + k),
-                    power + 1*(i + k));
+                codes[k] = hybrid_3rrrs_redundant_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
+                    power + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_power(model, X + 8*i, V + 7*i, tau + 7*i, power + 1*i);
+        const int code = hybrid_3rrrs_redundant_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13326,7 +13310,7 @@ size_t hybrid_3rrrs_redundant_rotation_batch(size_t n, const hybrid_3rrrs_redund
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_rotation(X + 8*i, R + 9*i);
+        const int code = hybrid_3rrrs_redundant_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13345,7 +13329,7 @@ size_t hybrid_3rrrs_redundant_pose_batch(size_t n, const hybrid_3rrrs_redundant_
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_pose(t + 3*i, R + 9*i, X + 8*i);
+        const int code = hybrid_3rrrs_redundant_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13364,7 +13348,7 @@ size_t hybrid_3rrrs_redundant_X_dot_batch(size_t n, const hybrid_3rrrs_redundant
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_X_dot(X + 8*i, V + 7*i, X_dot + 8*i);
+        const int code = hybrid_3rrrs_redundant_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13383,7 +13367,7 @@ size_t hybrid_3rrrs_redundant_pose_from_rpy_batch(size_t n, const hybrid_3rrrs_r
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_pose_from_rpy(t + 3*i, rpy + 3*i, X + 8*i);
+        const int code = hybrid_3rrrs_redundant_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13402,7 +13386,7 @@ size_t hybrid_3rrrs_redundant_retract_batch(size_t n, const hybrid_3rrrs_redunda
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_retract(X + 8*i, step + 7*i, X_moved + 8*i);
+        const int code = hybrid_3rrrs_redundant_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13421,7 +13405,7 @@ size_t hybrid_3rrrs_redundant_difference_batch(size_t n, const hybrid_3rrrs_redu
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_difference(X0 + 8*i, X1 + 8*i, step + 7*i);
+        const int code = hybrid_3rrrs_redundant_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13442,7 +13426,7 @@ size_t hybrid_3rrrs_redundant_interpolate_batch(size_t n, const hybrid_3rrrs_red
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_redundant_interpolate(X0 + 8*i, X1 + 8*i, s + 1*i, X + 8*i);
+        const int code = hybrid_3rrrs_redundant_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

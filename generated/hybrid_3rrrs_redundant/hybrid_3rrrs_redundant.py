@@ -91,7 +91,7 @@ _SHAPES = {  # of the arrays that functions give
     "qd": (10,),
     "qdd": (10,),
     "leg_force": (3, 3),
-    "drive": (7, 3),
+    "actuator": (7, 3),
     "potential": (1,),
     "lengths": (2,),
     "pivots": (3,),
@@ -187,7 +187,7 @@ _leg_force_rrrrs = (
     [1],
     [2],
 )
-_drive_rrrrs = (
+_actuator_rrrrs = (
     [0],
     [1],
     [2],
@@ -200,7 +200,7 @@ _leg_force_rrrs = (
     [4, 7],
     [5, 8],
 )
-_drive_rrrs = (
+_actuator_rrrs = (
     [9, 15],
     [10, 16],
     [11, 17],
@@ -957,15 +957,15 @@ def _prepare(p):
     rrrrs_Sigma_2_in_axes2_xx = rrrrs_trace_J_2 - rrrrs_J_2_in_spec2_xx
     rrrrs_Sigma_2_in_axes2_yy = rrrrs_trace_J_2 - rrrrs_J_2_in_spec2_yy
     rrrrs_Sigma_2_in_axes2_zz = rrrrs_trace_J_2 - rrrrs_J_2_in_spec2_zz
-    # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
     inv_rrrrs_size_t_3 = 1.0/rrrrs_size_t_3
     inv_rrrrs_rho2_3_t = 1.0/rrrrs_rho2_3_t
     inv_rrrrs_size = 1.0/rrrrs_size
-    # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
     rrrrs_d_G_in_axes4_yy = rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_y
     # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     rrrrs_d_c_in_axes4_yy = -rrrrs_d_G_in_axes4_yy - rrrrs_h_4_in_spec4_x*rrrrs_w_4_in_axes4_y
-    # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+    # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
     rrrrs_d_P_2_t = rrrrs_h_3_in_spec3_z*rrrrs_joint3_offset_x
     # (h_star) first moment about the platform origin
     rrrrs_h_star_t = rrrrs_link4_mass*rrrrs_platform_point_x
@@ -1119,7 +1119,7 @@ def _prepare(p):
     rrrs_g_in_axes1_z = (
     gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx + gravity_z*rrrs_base_frame_zx
     )
-    # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
     inv_rrrs_size_t_3 = 1.0/rrrs_size_t_3
     inv_rrrs_rho2_2_t = 1.0/rrrs_rho2_2_t
     inv_rrrs_size = 1.0/rrrs_size
@@ -1633,50 +1633,41 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
+_BLOCK = 4096  # states
 _SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
-    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    """Prepared values of a function, and for each loop over legs (leg, its values): floats."""
     if name not in p._cache:
         shared, loops = p._prepared()[name]
-        rows, columns = [], []
+        rows = []
         for count, values in loops:
-            table = [np.broadcast_to(v, count) for v in values]
-            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
-            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
-        p._cache[name] = tuple(map(float, shared)), rows, columns
+            table = [np.broadcast_to(v, count).tolist() for v in values]
+            rows.append([(leg, tuple(v[leg] for v in table)) for leg in range(count)])
+        p._cache[name] = tuple(map(float, shared)), rows
     return p._cache[name]
-
-
-def _sqrt(x):
-    return x**0.5 if x >= 0.0 else np.nan
 
 
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
-    sqrt = staticmethod(_sqrt)
+    sqrt = staticmethod(math.sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda leg, good: good)
 
-    def __init__(self, p, states):
+    def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)[:2]
+        return _constants(self.p, name)
 
     def zeros(self, name):
         return [0.0] * math.prod(_SHAPES[name])
-
-    def added(self, sums, leg, terms):
-        """Sums over the legs so far."""
-        return [a + b for a, b in zip(sums, terms)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1688,7 +1679,7 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, ValueError):
             ok = False
         if ok and all(all(map(math.isfinite, array)) for array in arrays):
             return arrays
@@ -1696,54 +1687,66 @@ class _Floats:
 
 
 class _Arrays:
-    """Functions of many states at once: arrays (states,), and (legs, states)."""
+    """Functions of many states at once, in arrays (states,).
+
+    Attributes:
+        kept: replays, by their place among those of a block, for other blocks of the same size;
+            None where there are too few states for it to pay to record.
+    """
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
-    def __init__(self, p, states):
-        self.p, self.states = p, states
+    def __init__(self, p, states, kept=None):
+        self.p, self.states, self.kept, self.done = p, states, kept, 0
 
     def constants(self, name):
-        """Shared values, and (all legs, their values) once for each loop."""
-        shared, _, columns = _constants(self.p, name)
-        return shared, columns
+        """Shared values, and (leg, its values) for every leg of each loop.
+
+        As arrays without dimensions: beside arrays they are faster than floats.
+        """
+        if (name, "arrays") not in self.p._cache:
+            shared, loops = _constants(self.p, name)
+            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
+            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
+        return self.p._cache[name, "arrays"]
 
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, legs, good):
-        """Whether it holds for all legs."""
-        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
-
-    def added(self, sums, legs, terms):
-        """Sums over the legs, all at once."""
-        shape = (legs.stop, self.states)
-        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+    def computed(self, function, names, vectors):
+        """Flags and arrays (*shape, states) of a function."""
+        if self.kept is None:
+            flags, arrays = function(self, *vectors)
+        else:
+            if self.done not in self.kept:
+                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+            flags, arrays = self.kept[self.done].run(vectors)
+            self.done += 1
+        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = function(self, *vectors)
-        for a in arrays:
-            ok = ok & np.isfinite(a).all(axis=0)
+        ok, arrays = self.computed(function, names, vectors)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
-                a[:, ~ok] = np.nan
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+                a[..., ~ok] = np.nan
+        return arrays
 
 
 class _Judged(_Arrays):
     """The same, and why a state is impossible."""
 
-    def __init__(self, p, states):
-        super().__init__(p, states)
+    def __init__(self, p, states, kept=None):
+        super().__init__(p, states, kept)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = function(self, *vectors)
+        (valid, reached, clear), arrays = self.computed(function, names, vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            self.failed[code] |= np.logical_not(good)
+        return arrays
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1755,9 +1758,9 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _mode(p, states):
+def _mode(p, states, kept=None):
     """The faster way for so many states."""
-    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
@@ -1790,26 +1793,27 @@ def _one(steps, p, given, shapes, read, unbounded):
 
 
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
-    """Results at many states, block by block."""
+    """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
+    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
-    if count > _BLOCK:
+    if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
         # of intermediate arrays from block to block instead of giving its pages back.
         np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
-        for first in range(0, max(count, 1), _BLOCK):
-            block = slice(first, min(first + _BLOCK, count))
+        for stop in (*range(size, count, max(size, 1)), count):
+            block = slice(stop - size, stop)
             states = [_states_last(v[block]) for v in flat]
-            m, good = mode(p, block.stop - first), possible[block]
+            m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
-            _all_finite(compress(states, read), good)
+            good &= _finite(compress(states, read), size)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
+            good &= _finite([np.minimum(a, 0.0) for a in found] if unbounded else found, size)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1826,10 +1830,194 @@ def _states_last(a):
     return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
 
 
-def _all_finite(arrays, good):
-    """Clear the flags of states in which some entry is not finite."""
-    for a in arrays:
-        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+def _finite(arrays, states):
+    """In which states all entries of arrays (*shape, states) are finite."""
+    flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
+    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    if not np.all(good):  # or the sum is too large
+        good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
+    return good
+
+
+def _least(x, y, out):
+    return np.minimum(x, y, out=out)
+
+
+def _both(operation):
+    """An operation of recorded values, and the same with its operands the other way round."""
+    return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
+
+
+class _Recorded:
+    """A value of a function that runs to be recorded."""
+
+    def __init__(self, record, number):
+        self.record, self.number = record, number
+
+    __add__, __radd__ = _both(np.add)
+    __sub__, __rsub__ = _both(np.subtract)
+    __mul__, __rmul__ = _both(np.multiply)
+    __truediv__, __rtruediv__ = _both(np.divide)
+    __and__, __rand__ = _both(np.logical_and)
+    __gt__, __lt__ = _both(np.greater)
+    __ge__, __le__ = _both(np.greater_equal)
+
+    def __neg__(self):
+        return self.record.made(np.negative, self)
+
+    def __abs__(self):
+        return self.record.made(np.absolute, self)
+
+
+class _Record:
+    """The operations of a function, recorded by running it, and where their results stand.
+
+    Results share arrays: what is read for the last time makes room for the next, so that a few
+    arrays do, which stay in the processor's cache.
+
+    Attributes:
+        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
+        steps: (operation, numbers of its operands and of its result).
+        slots: number of a result -> (kind of array or "out", place).
+        counts: how many arrays there are of every kind.
+    """
+
+    def __init__(self, p, function, sizes):
+        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
+        self.constant, self.literals = [], {}
+        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
+        flags, arrays = function(self, *self.inputs)
+        self.is_judged = isinstance(flags, tuple)
+        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes = [len(array) for array in arrays]
+        for place, value in enumerate(v for array in arrays for v in array):
+            self.store(self.number(value), place)
+        self.counts = self.share()
+
+    # ---- the mode in which the function runs ----
+
+    def sqrt(self, x):
+        return self.made(np.sqrt, x)
+
+    def sin(self, x):
+        return self.made(np.sin, x)
+
+    def cos(self, x):
+        return self.made(np.cos, x)
+
+    def atan2(self, y, x):
+        return self.made(np.arctan2, y, x)
+
+    def least(self, x, y):
+        return self.made(_least, x, y)
+
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        self.name, (shared, loops) = name, _constants(self.p, name)
+        shared = self.named(shared)
+        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+
+    # ---- what is recorded ----
+
+    def named(self, values):
+        """Values for constants."""
+        found = [self.value("one") for _ in values]
+        self.constant += [v.number for v in found]
+        return found
+
+    def value(self, kind):
+        self.kinds.append(kind)
+        return _Recorded(self, len(self.kinds) - 1)
+
+    def number(self, value):
+        """Number of a value, which may be a literal."""
+        if isinstance(value, _Recorded):
+            return value.number
+        if value not in self.literals:
+            self.literals[value] = self.value("one").number
+        return self.literals[value]
+
+    def made(self, operation, *operands):
+        """The result of an operation."""
+        numbers = [self.number(operand) for operand in operands]
+        if all(self.kinds[n] == "one" for n in numbers):
+            kind = "one"
+        else:
+            kind = "flag" if operation in _OF_FLAGS else "state"
+        result = self.value(kind)
+        self.steps.append((operation, [*numbers, result.number]))
+        return result
+
+    def store(self, number, place):
+        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
+        if self.kinds[number] != "state" or number in self.slots:
+            copy = self.value("state").number
+            self.steps.append((np.positive, [number, copy]))
+            number = copy
+        self.slots[number] = "out", place
+
+    def share(self):
+        """Give results their places; how many there are of each kind."""
+        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
+        last.update(dict.fromkeys(self.flags, len(self.steps)))
+        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
+        for k, (_, (*operands, result)) in enumerate(self.steps):
+            for n in dict.fromkeys(operands):
+                kind, place = self.slots.get(n, ("given", 0))
+                if last[n] == k and kind in free:
+                    free[kind].append(place)
+            if result not in self.slots:
+                kind = self.kinds[result]
+                if not free[kind]:
+                    free[kind].append(counts[kind])
+                    counts[kind] += 1
+                self.slots[result] = kind, free[kind].pop()
+        return counts
+
+
+_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_RECORDS = {}  # by function
+
+
+class _Replay:
+    """A record on arrays of so many states, which are made once."""
+
+    def __init__(self, p, function, sizes, states):
+        if function not in _RECORDS:
+            _RECORDS[function] = _Record(p, function, sizes)
+        r = _RECORDS[function]
+        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
+        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
+        made["out"] = _rows(sum(r.sizes), states)
+        self.inputs = [_rows(size, states) for size in sizes]
+        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        at = {number: np.array(value) for value, number in r.literals.items()}
+        for values, given in zip(r.inputs, self.inputs):
+            at |= {v.number: row for v, row in zip(values, given)}
+        if r.name is not None:
+            shared, loops = _constants(p, r.name)
+            values = sum((k for legs in loops for _, k in legs), shared)
+            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
+        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
+        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
+        flags = [at[n] for n in r.flags]
+        self.flags = flags if r.is_judged else flags[0]
+
+    def run(self, vectors):
+        """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
+        for rows, vector in zip(self.inputs, vectors):
+            rows[:] = vector
+        for operation, operands in self.steps:
+            operation(*operands)
+        return self.flags, self.arrays
+
+
+def _rows(count, states, kind=float):
+    """Rows of so many states, a cache line apart from each other."""
+    return np.empty((count, states + 8), dtype=kind)[:, :states]
 
 
 def _extended(a, size):
@@ -2253,7 +2441,13 @@ def _run_dynamics(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 27
+    (
+    M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_rrrrs_zz,
+        M_ta_rrrrs_xx, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yy, M_ta_rrrrs_yz,
+        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_t,
+        M_aa_t_2, M_aa_rrrrs_yz, M_aa_rrrrs_zz, Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z,
+        Z_a_rrrrs_x, Z_a_rrrrs_y, Z_a_rrrrs_z,
+    ) = [0.0] * 27
     for leg, k in legs[0]:
         (
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xx,
@@ -2880,7 +3074,7 @@ def _run_dynamics(m, X, V):
         rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y + rrrrs_w_1_in_axes4_z*(rrrrs_J_1_in_spec1_xx +
             rrrrs_Jc_2_in_axes1_zz) - rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x
         )
-        # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_d_G_in_axes4_yz = rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_d_G_in_axes4_xx = (
         rrrrs_d_Gamma_3_in_axes4_x*rrrrs_w_3_in_axes4_x +
@@ -2895,9 +3089,9 @@ def _run_dynamics(m, X, V):
             rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_7 +
             rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_6)
         )
-        # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y
-        # (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_G_o_in_axes4_x = (
         -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_o_in_axes3_z)
@@ -2991,7 +3185,7 @@ def _run_dynamics(m, X, V):
         -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x - axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
             axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z
         )
-        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_d_P_2_in_axes4_x = (
         rrrrs_d_Gamma_2_in_axes4_x + rrrrs_d_G_in_axes4_xx*rrrrs_r_2_in_axes4_y -
             rrrrs_d_Gamma_4_in_axes4_x*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y
@@ -3018,14 +3212,14 @@ def _run_dynamics(m, X, V):
         axis_x_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_x + axis_y_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_y
             + axis_z_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_z
         )
-        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_dy_2_P_2_t = (
         rrrrs_dy_2_G_in_axes4_y*rrrrs_r_2_in_axes4_x +
             rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*rrrrs_r_3_in_axes4_x
             - rrrrs_dy_2_Gamma_3)
         )
         rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t
-        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_P_2_o_t = (
         rrrrs_G_o_in_axes4_x*rrrrs_r_2_in_axes4_y - rrrrs_G_o_in_axes4_y*rrrrs_r_2_in_axes4_x
         )
@@ -3067,21 +3261,46 @@ def _run_dynamics(m, X, V):
         rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
         rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         ok = (
-        ok & m.every(leg, (abs(rrrrs_h_3_t_10) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+        ok & (abs(rrrrs_h_3_t_10) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
             0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
-            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size))
+            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrrs_Q_xx, rrrrs_Q_xy, rrrrs_Q_xz, rrrrs_Q_yy, rrrrs_Q_yz, rrrrs_Q_zz,
-            rrrrs_M_ta_t_3, -rrrrs_M_ta_t_4, rrrrs_M_ta_t_5, rrrrs_M_ta_t_6, -rrrrs_M_ta_t_8,
-            rrrrs_M_ta_t_9, rrrrs_M_ta_t_10, rrrrs_M_ta_t_11, -rrrrs_M_ta_t_12, rrrrs_M_aa_t,
-            rrrrs_M_aa_t_2, rrrrs_M_aa_t_3, rrrrs_M_aa_t_4, rrrrs_M_aa_t_5, rrrrs_M_aa_t_6,
-            rrrrs_U_x, rrrrs_U_y, rrrrs_U_z, rrrrs_Z_a_t, rrrrs_Z_a_t_2, rrrrs_Z_a_t_3,
-        ))
-        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (M_tt) translational block of M
+        M_tt_rrrrs_xx += rrrrs_Q_xx
+        M_tt_rrrrs_xy += rrrrs_Q_xy
+        M_tt_rrrrs_xz += rrrrs_Q_xz
+        M_tt_rrrrs_yy += rrrrs_Q_yy
+        M_tt_rrrrs_yz += rrrrs_Q_yz
+        M_tt_rrrrs_zz += rrrrs_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_rrrrs_xx += rrrrs_M_ta_t_3
+        M_ta_rrrrs_xy += -rrrrs_M_ta_t_4
+        M_ta_rrrrs_xz += rrrrs_M_ta_t_5
+        M_ta_rrrrs_yx += rrrrs_M_ta_t_6
+        M_ta_rrrrs_yy += -rrrrs_M_ta_t_8
+        M_ta_rrrrs_yz += rrrrs_M_ta_t_9
+        M_ta_rrrrs_zx += rrrrs_M_ta_t_10
+        M_ta_rrrrs_zy += rrrrs_M_ta_t_11
+        M_ta_rrrrs_zz += -rrrrs_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_rrrrs_xx += rrrrs_M_aa_t
+        M_aa_rrrrs_xy += rrrrs_M_aa_t_2
+        M_aa_t += rrrrs_M_aa_t_3
+        M_aa_t_2 += rrrrs_M_aa_t_4
+        M_aa_rrrrs_yz += rrrrs_M_aa_t_5
+        M_aa_rrrrs_zz += rrrrs_M_aa_t_6
+        # (Z_t) translational part of Z
+        Z_t_rrrrs_x += rrrrs_U_x
+        Z_t_rrrrs_y += rrrrs_U_y
+        Z_t_rrrrs_z += rrrrs_U_z
+        # (Z_a) rotational part of Z
+        Z_a_rrrrs_x += rrrrs_Z_a_t
+        Z_a_rrrrs_y += rrrrs_Z_a_t_2
+        Z_a_rrrrs_z += rrrrs_Z_a_t_3
+        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_Z[_Z_rrrrs[0][leg]] = rrrrs_P_2_o
-        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_x
         out_M[_M_rrrrs[1][leg]] = rrrrs_d_P_2_x
         out_M[_M_rrrrs[2][leg]] = rrrrs_d_P_2_y
@@ -3095,7 +3314,7 @@ def _run_dynamics(m, X, V):
         out_M[_M_rrrrs[9][leg]] = rrrrs_M_ya_2_y
         out_M[_M_rrrrs[10][leg]] = rrrrs_M_ya_2_z
         out_M[_M_rrrrs[11][leg]] = rrrrs_M_ya_2_z
-        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_M[_M_rrrrs[12][leg]] = rrrrs_dy_2_P_2
         # (rrrrs-w_1) reciprocal vector 1
         out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_x
@@ -3118,13 +3337,12 @@ def _run_dynamics(m, X, V):
         # (rrrrs-w_3) reciprocal vector 2
         out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
     (
-    M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_rrrrs_zz,
-        M_ta_rrrrs_xx, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yy, M_ta_rrrrs_yz,
-        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_t,
-        M_aa_t_2, M_aa_rrrrs_yz, M_aa_rrrrs_zz, Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z,
-        Z_a_rrrrs_x, Z_a_rrrrs_y, Z_a_rrrrs_z,
-    ) = sums
-    sums = [0.0] * 27
+    M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_rrrs_zz,
+        M_ta_rrrs_xx, M_ta_rrrs_xy, M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_rrrs_yy, M_ta_rrrs_yz,
+        M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_rrrs_zz, M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz,
+        M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz, Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x,
+        Z_a_rrrs_y, Z_a_rrrs_z,
+    ) = [0.0] * 27
     for leg, k in legs[1]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
@@ -3520,7 +3738,7 @@ def _run_dynamics(m, X, V):
         rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
             rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
         )
-        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_d_G_in_axes3_xz = (
         rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
             rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
@@ -3528,7 +3746,7 @@ def _run_dynamics(m, X, V):
             rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
             rrrs_J_3_in_spec3_yz*rrrs_s_3_t))
         )
-        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrs_d_c_in_axes3_xx = (
@@ -3652,18 +3870,43 @@ def _run_dynamics(m, X, V):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrs_Q_xx, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yy, rrrs_Q_yz, rrrs_Q_zz, rrrs_M_ta_t_3,
-            rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8, rrrs_M_ta_t_9,
-            rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t, rrrs_M_aa_t_2,
-            rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6, rrrs_U_x, rrrs_U_y,
-            rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
-        ))
+        # (M_tt) translational block of M
+        M_tt_rrrs_xx += rrrs_Q_xx
+        M_tt_rrrs_xy += rrrs_Q_xy
+        M_tt_rrrs_xz += rrrs_Q_xz
+        M_tt_rrrs_yy += rrrs_Q_yy
+        M_tt_rrrs_yz += rrrs_Q_yz
+        M_tt_rrrs_zz += rrrs_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_rrrs_xx += rrrs_M_ta_t_3
+        M_ta_rrrs_xy += rrrs_M_ta_t_4
+        M_ta_rrrs_xz += rrrs_M_ta_t_5
+        M_ta_rrrs_yx += rrrs_M_ta_t_6
+        M_ta_rrrs_yy += rrrs_M_ta_t_8
+        M_ta_rrrs_yz += rrrs_M_ta_t_9
+        M_ta_rrrs_zx += rrrs_M_ta_t_10
+        M_ta_rrrs_zy += rrrs_M_ta_t_11
+        M_ta_rrrs_zz += rrrs_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_rrrs_xx += rrrs_M_aa_t
+        M_aa_rrrs_xy += rrrs_M_aa_t_2
+        M_aa_rrrs_xz += rrrs_M_aa_t_3
+        M_aa_rrrs_yy += rrrs_M_aa_t_4
+        M_aa_rrrs_yz += rrrs_M_aa_t_5
+        M_aa_rrrs_zz += rrrs_M_aa_t_6
+        # (Z_t) translational part of Z
+        Z_t_rrrs_x += rrrs_U_x
+        Z_t_rrrs_y += rrrs_U_y
+        Z_t_rrrs_z += rrrs_U_z
+        # (Z_a) rotational part of Z
+        Z_a_rrrs_x += rrrs_Z_a_t
+        Z_a_rrrs_y += rrrs_Z_a_t_2
+        Z_a_rrrs_z += rrrs_Z_a_t_3
         # (rrrs-w_1) reciprocal vector 1
         out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
         out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
@@ -3680,13 +3923,6 @@ def _run_dynamics(m, X, V):
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
-    (
-    M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_rrrs_zz,
-        M_ta_rrrs_xx, M_ta_rrrs_xy, M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_rrrs_yy, M_ta_rrrs_yz,
-        M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_rrrs_zz, M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz,
-        M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz, Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x,
-        Z_a_rrrs_y, Z_a_rrrs_z,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rrrrs_xx + M_tt_rrrs_xx + m_star
     M_tt_xy = M_tt_rrrrs_xy + M_tt_rrrs_xy
@@ -3837,7 +4073,12 @@ def _run_M(m, X):
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
-    sums = [0.0] * 21
+    (
+    M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_rrrrs_zz,
+        M_ta_rrrrs_xx, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yy, M_ta_rrrrs_yz,
+        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_t,
+        M_aa_t_2, M_aa_rrrrs_yz, M_aa_rrrrs_zz,
+    ) = [0.0] * 21
     for leg, k in legs[0]:
         (
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xx,
@@ -4058,7 +4299,7 @@ def _run_M(m, X):
         rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y + rrrrs_w_1_in_axes4_z*(rrrrs_J_1_in_spec1_xx +
             rrrrs_Jc_2_in_axes1_zz) - rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x
         )
-        # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_d_G_in_axes4_yz = rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_d_G_in_axes4_xx = (
         rrrrs_d_Gamma_3_in_axes4_x*rrrrs_w_3_in_axes4_x +
@@ -4073,7 +4314,7 @@ def _run_M(m, X):
             rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_7 +
             rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_6)
         )
-        # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y
         # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrrs_d_c_in_axes4_xx = (
@@ -4164,7 +4405,7 @@ def _run_M(m, X):
         )
         rrrrs_Q_t_19 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_13 - axis_z_rrrrs_axes4_z*rrrrs_Q_t_16
         rrrrs_Q_zz = -2.0*rrrrs_Q_t_19 - rrrrs_d_c_in_axes4_xx
-        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_d_P_2_in_axes4_x = (
         rrrrs_d_Gamma_2_in_axes4_x + rrrrs_d_G_in_axes4_xx*rrrrs_r_2_in_axes4_y -
             rrrrs_d_Gamma_4_in_axes4_x*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y
@@ -4191,7 +4432,7 @@ def _run_M(m, X):
         axis_x_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_x + axis_y_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_y
             + axis_z_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_z
         )
-        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_dy_2_P_2_t = (
         rrrrs_dy_2_G_in_axes4_y*rrrrs_r_2_in_axes4_x +
             rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*rrrrs_r_3_in_axes4_x
@@ -4223,18 +4464,36 @@ def _run_M(m, X):
         rrrrs_M_ya_2_y = rrrrs_d_P_2_x*rrrrs_q_z - rrrrs_d_P_2_z*rrrrs_q_x
         rrrrs_M_ya_2_z = rrrrs_d_P_2_y*rrrrs_q_x - rrrrs_d_P_2_x*rrrrs_q_y
         ok = (
-        ok & m.every(leg, (abs(rrrrs_h_3_t_10) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+        ok & (abs(rrrrs_h_3_t_10) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
             0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
-            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size))
+            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrrs_Q_xx, rrrrs_Q_xy, rrrrs_Q_xz, rrrrs_Q_yy, rrrrs_Q_yz, rrrrs_Q_zz,
-            rrrrs_M_ta_t_3, -rrrrs_M_ta_t_4, rrrrs_M_ta_t_5, rrrrs_M_ta_t_6, -rrrrs_M_ta_t_8,
-            rrrrs_M_ta_t_9, rrrrs_M_ta_t_10, rrrrs_M_ta_t_11, -rrrrs_M_ta_t_12, rrrrs_M_aa_t,
-            rrrrs_M_aa_t_2, rrrrs_M_aa_t_3, rrrrs_M_aa_t_4, rrrrs_M_aa_t_5, rrrrs_M_aa_t_6,
-        ))
-        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (M_tt) translational block of M
+        M_tt_rrrrs_xx += rrrrs_Q_xx
+        M_tt_rrrrs_xy += rrrrs_Q_xy
+        M_tt_rrrrs_xz += rrrrs_Q_xz
+        M_tt_rrrrs_yy += rrrrs_Q_yy
+        M_tt_rrrrs_yz += rrrrs_Q_yz
+        M_tt_rrrrs_zz += rrrrs_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_rrrrs_xx += rrrrs_M_ta_t_3
+        M_ta_rrrrs_xy += -rrrrs_M_ta_t_4
+        M_ta_rrrrs_xz += rrrrs_M_ta_t_5
+        M_ta_rrrrs_yx += rrrrs_M_ta_t_6
+        M_ta_rrrrs_yy += -rrrrs_M_ta_t_8
+        M_ta_rrrrs_yz += rrrrs_M_ta_t_9
+        M_ta_rrrrs_zx += rrrrs_M_ta_t_10
+        M_ta_rrrrs_zy += rrrrs_M_ta_t_11
+        M_ta_rrrrs_zz += -rrrrs_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_rrrrs_xx += rrrrs_M_aa_t
+        M_aa_rrrrs_xy += rrrrs_M_aa_t_2
+        M_aa_t += rrrrs_M_aa_t_3
+        M_aa_t_2 += rrrrs_M_aa_t_4
+        M_aa_rrrrs_yz += rrrrs_M_aa_t_5
+        M_aa_rrrrs_zz += rrrrs_M_aa_t_6
+        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_x
         out_M[_M_rrrrs[1][leg]] = rrrrs_d_P_2_x
         out_M[_M_rrrrs[2][leg]] = rrrrs_d_P_2_y
@@ -4248,15 +4507,14 @@ def _run_M(m, X):
         out_M[_M_rrrrs[9][leg]] = rrrrs_M_ya_2_y
         out_M[_M_rrrrs[10][leg]] = rrrrs_M_ya_2_z
         out_M[_M_rrrrs[11][leg]] = rrrrs_M_ya_2_z
-        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_M[_M_rrrrs[12][leg]] = rrrrs_dy_2_P_2
     (
-    M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_rrrrs_zz,
-        M_ta_rrrrs_xx, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yy, M_ta_rrrrs_yz,
-        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_t,
-        M_aa_t_2, M_aa_rrrrs_yz, M_aa_rrrrs_zz,
-    ) = sums
-    sums = [0.0] * 21
+    M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_rrrs_zz,
+        M_ta_rrrs_xx, M_ta_rrrs_xy, M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_rrrs_yy, M_ta_rrrs_yz,
+        M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_rrrs_zz, M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz,
+        M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
+    ) = [0.0] * 21
     for leg, k in legs[1]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
@@ -4393,7 +4651,7 @@ def _run_M(m, X):
         rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
             rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
         )
-        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_d_G_in_axes3_xz = (
         rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
             rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
@@ -4507,23 +4765,35 @@ def _run_M(m, X):
         rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
         rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrs_Q_xx, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yy, rrrs_Q_yz, rrrs_Q_zz, rrrs_M_ta_t_3,
-            rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8, rrrs_M_ta_t_9,
-            rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t, rrrs_M_aa_t_2,
-            rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
-        ))
-    (
-    M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_rrrs_zz,
-        M_ta_rrrs_xx, M_ta_rrrs_xy, M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_rrrs_yy, M_ta_rrrs_yz,
-        M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_rrrs_zz, M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz,
-        M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
-    ) = sums
+        # (M_tt) translational block of M
+        M_tt_rrrs_xx += rrrs_Q_xx
+        M_tt_rrrs_xy += rrrs_Q_xy
+        M_tt_rrrs_xz += rrrs_Q_xz
+        M_tt_rrrs_yy += rrrs_Q_yy
+        M_tt_rrrs_yz += rrrs_Q_yz
+        M_tt_rrrs_zz += rrrs_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_rrrs_xx += rrrs_M_ta_t_3
+        M_ta_rrrs_xy += rrrs_M_ta_t_4
+        M_ta_rrrs_xz += rrrs_M_ta_t_5
+        M_ta_rrrs_yx += rrrs_M_ta_t_6
+        M_ta_rrrs_yy += rrrs_M_ta_t_8
+        M_ta_rrrs_yz += rrrs_M_ta_t_9
+        M_ta_rrrs_zx += rrrs_M_ta_t_10
+        M_ta_rrrs_zy += rrrs_M_ta_t_11
+        M_ta_rrrs_zz += rrrs_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_rrrs_xx += rrrs_M_aa_t
+        M_aa_rrrs_xy += rrrs_M_aa_t_2
+        M_aa_rrrs_xz += rrrs_M_aa_t_3
+        M_aa_rrrs_yy += rrrs_M_aa_t_4
+        M_aa_rrrs_yz += rrrs_M_aa_t_5
+        M_aa_rrrs_zz += rrrs_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rrrrs_xx + M_tt_rrrs_xx + m_star
     M_tt_xy = M_tt_rrrrs_xy + M_tt_rrrs_xy
@@ -4696,7 +4966,7 @@ def _run_Z(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 6
+    Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z, Z_a_rrrrs_x, Z_a_rrrrs_y, Z_a_rrrrs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
@@ -5217,7 +5487,7 @@ def _run_Z(m, X, V):
         rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_s_2 +
             rrrrs_N_2_o_in_axes2_y*rrrrs_c_2
         )
-        # (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_G_o_in_axes4_x = (
         -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_o_in_axes3_z)
@@ -5252,7 +5522,7 @@ def _run_Z(m, X, V):
         -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x - axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
             axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z
         )
-        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_P_2_o_t = (
         rrrrs_G_o_in_axes4_x*rrrrs_r_2_in_axes4_y - rrrrs_G_o_in_axes4_y*rrrrs_r_2_in_axes4_x
         )
@@ -5262,18 +5532,22 @@ def _run_Z(m, X, V):
         rrrrs_Z_a_t_2 = rrrrs_U_x*rrrrs_q_z - rrrrs_U_z*rrrrs_q_x
         rrrrs_Z_a_t_3 = rrrrs_U_y*rrrrs_q_x - rrrrs_U_x*rrrrs_q_y
         ok = (
-        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size))
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrrs_U_x, rrrrs_U_y, rrrrs_U_z, rrrrs_Z_a_t, rrrrs_Z_a_t_2, rrrrs_Z_a_t_3,
-        ))
-        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        # (Z_t) translational part of Z
+        Z_t_rrrrs_x += rrrrs_U_x
+        Z_t_rrrrs_y += rrrrs_U_y
+        Z_t_rrrrs_z += rrrrs_U_z
+        # (Z_a) rotational part of Z
+        Z_a_rrrrs_x += rrrrs_Z_a_t
+        Z_a_rrrrs_y += rrrrs_Z_a_t_2
+        Z_a_rrrrs_z += rrrrs_Z_a_t_3
+        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_Z[_Z_rrrrs[0][leg]] = rrrrs_P_2_o
-    Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z, Z_a_rrrrs_x, Z_a_rrrrs_y, Z_a_rrrrs_z = sums
-    sums = [0.0] * 6
+    Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z = [0.0] * 6
     for leg, k in legs[1]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
@@ -5622,7 +5896,7 @@ def _run_Z(m, X, V):
         rrrs_N_1_o_in_axes1_z = (
         rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2 + rrrs_N_2_o_in_axes2_y*rrrs_c_2
         )
-        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
@@ -5659,15 +5933,19 @@ def _run_Z(m, X, V):
         rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
         rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
-        ))
-    Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z = sums
+        # (Z_t) translational part of Z
+        Z_t_rrrs_x += rrrs_U_x
+        Z_t_rrrs_y += rrrs_U_y
+        Z_t_rrrs_z += rrrs_U_z
+        # (Z_a) rotational part of Z
+        Z_a_rrrs_x += rrrs_Z_a_t
+        Z_a_rrrs_y += rrrs_Z_a_t_2
+        Z_a_rrrs_z += rrrs_Z_a_t_3
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_rrrrs_x + Z_t_rrrs_x
     Z_t_y = Z_p_y + Z_t_rrrrs_y + Z_t_rrrs_y
@@ -5891,10 +6169,10 @@ def _run_H(m, X):
         rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
         rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         ok = (
-        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size))
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-w_1) reciprocal vector 1
         out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_x
@@ -6049,10 +6327,10 @@ def _run_H(m, X):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
         # (rrrs-w_1) reciprocal vector 1
         out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
@@ -6219,7 +6497,7 @@ def _run_required(m, X, V, A):
     mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
     mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
     mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
-    sums = [0.0] * 6
+    R_t_t, R_t_t_2, R_t_t_3, R_a_rrrrs_x, R_a_rrrrs_y, R_a_rrrrs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
@@ -6744,7 +7022,7 @@ def _run_required(m, X, V, A):
         rrrrs_N_1_in_axes1_z = (
         rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_s_2 + rrrrs_N_2_in_axes2_y*rrrrs_c_2
         )
-        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_G_in_axes4_x = (
         -rrrrs_w_3_in_axes4_x*(rrrrs_G_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_in_axes3_z)
@@ -6777,7 +7055,7 @@ def _run_required(m, X, V, A):
         axis_x_rrrrs_axes4_z*rrrrs_c_in_axes4_x + axis_y_rrrrs_axes4_z*rrrrs_c_in_axes4_y +
             axis_z_rrrrs_axes4_z*rrrrs_c_in_axes4_z
         )
-        # (rrrrs-P_2) inertia and weight of the leg along the extra freedom of joint 2
+        # (rrrrs-P_2) inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_P_2_t = (
         rrrrs_G_in_axes4_x*rrrrs_r_2_in_axes4_y - rrrrs_G_in_axes4_y*rrrrs_r_2_in_axes4_x
         )
@@ -6795,15 +7073,20 @@ def _run_required(m, X, V, A):
         rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
         rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         ok = (
-        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size))
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrrs_c_x, rrrrs_c_y, rrrrs_c_z, rrrrs_R_a_t, rrrrs_R_a_t_2, rrrrs_R_a_t_3,
-        ))
-        # (rrrrs-P_2) inertia and weight of the leg along the extra freedom of joint 2
+        # (R_t) force that actuators and external wrench must give
+        R_t_t += rrrrs_c_x
+        R_t_t_2 += rrrrs_c_y
+        R_t_t_3 += rrrrs_c_z
+        # (R_a) moment that actuators and external wrench must give
+        R_a_rrrrs_x += rrrrs_R_a_t
+        R_a_rrrrs_y += rrrrs_R_a_t_2
+        R_a_rrrrs_z += rrrrs_R_a_t_3
+        # (rrrrs-P_2) inertia and weight of the leg along the extra degree of freedom of joint 2
         out_required[_required_rrrrs[0][leg]] = rrrrs_P_2
         # (rrrrs-w_1) reciprocal vector 1
         out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_x
@@ -6825,8 +7108,7 @@ def _run_required(m, X, V, A):
         out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
         # (rrrrs-w_3) reciprocal vector 2
         out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
-    R_t_t, R_t_t_2, R_t_t_3, R_a_rrrrs_x, R_a_rrrrs_y, R_a_rrrrs_z = sums
-    sums = [0.0] * 6
+    R_t_t_4, R_t_t_5, R_t_t_6, R_a_rrrs_x, R_a_rrrs_y, R_a_rrrs_z = [0.0] * 6
     for leg, k in legs[1]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
@@ -7176,7 +7458,7 @@ def _run_required(m, X, V, A):
         rrrs_N_1_in_axes1_z = (
         rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 + rrrs_N_2_in_axes2_y*rrrs_c_2
         )
-        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_in_axes3_x = (
@@ -7218,14 +7500,19 @@ def _run_required(m, X, V, A):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
-        sums = m.added(sums, leg, (
-        rrrs_c_x, rrrs_c_y, rrrs_c_z, rrrs_R_a_t, rrrs_R_a_t_2, rrrs_R_a_t_3,
-        ))
+        # (R_t) force that actuators and external wrench must give
+        R_t_t_4 += rrrs_c_x
+        R_t_t_5 += rrrs_c_y
+        R_t_t_6 += rrrs_c_z
+        # (R_a) moment that actuators and external wrench must give
+        R_a_rrrs_x += rrrs_R_a_t
+        R_a_rrrs_y += rrrs_R_a_t_2
+        R_a_rrrs_z += rrrs_R_a_t_3
         # (rrrs-w_1) reciprocal vector 1
         out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
         out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
@@ -7242,7 +7529,6 @@ def _run_required(m, X, V, A):
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
-    R_t_t_4, R_t_t_5, R_t_t_6, R_a_rrrs_x, R_a_rrrs_y, R_a_rrrs_z = sums
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t - R_t_t_4
     R_t_y = f_p_y - R_t_t_2 - R_t_t_5
@@ -7396,9 +7682,8 @@ def _run_inverse_kinematics(m, X):
             inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >=
-            0.0))
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
         )
         # (rrrrs-q_1) displacement of joint 1
         out_q[_q_rrrrs[0][leg]] = rrrrs_q_1
@@ -7483,8 +7768,8 @@ def _run_inverse_kinematics(m, X):
             inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
         )
         # (rrrs-q_1) displacement of joint 1
         out_q[_q_rrrs[0][leg]] = rrrs_q_1
@@ -7728,10 +8013,10 @@ def _run_joint_rates(m, X, V):
             rrrrs_qd_3*(rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t))
         )
         ok = (
-        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size))
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrrs[0][leg]] = rrrrs_qd_1
@@ -7870,10 +8155,10 @@ def _run_joint_rates(m, X, V):
             rrrs_r_2_t*rrrs_s_3_t))
         )
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
         # (rrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrs[0][leg]] = rrrs_qd_1
@@ -8244,10 +8529,10 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y - rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size))
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rrrrs[0][leg]] = rrrrs_qdd_1
@@ -8475,10 +8760,10 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrs-qdd_3) acceleration of joint 3
         rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
         # (rrrs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rrrs[0][leg]] = rrrs_qdd_1
@@ -8559,7 +8844,7 @@ def _run_legs(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
-    out_drive = m.zeros("drive")
+    out_actuator = m.zeros("actuator")
     for leg, k in legs[0]:
         (
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
@@ -9059,7 +9344,7 @@ def _run_legs(m, X, V, A):
         rrrrs_N_1_in_axes1_z = (
         rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_s_2 + rrrrs_N_2_in_axes2_y*rrrrs_c_2
         )
-        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y
         # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
         rrrrs_c_in_axes4_x = (
@@ -9098,23 +9383,23 @@ def _run_legs(m, X, V, A):
             axis_z_rrrrs_axes4_z*rrrrs_c_true_in_axes4_z
         )
         ok = (
-        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size))
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rrrrs[0][leg]] = rrrrs_c_true_x
         out_leg_force[_leg_force_rrrrs[1][leg]] = rrrrs_c_true_y
         out_leg_force[_leg_force_rrrrs[2][leg]] = rrrrs_c_true_z
         # (rrrrs-w_1) reciprocal vector 1
-        out_drive[_drive_rrrrs[0][leg]] = rrrrs_w_1_x
-        out_drive[_drive_rrrrs[1][leg]] = rrrrs_w_1_y
-        out_drive[_drive_rrrrs[2][leg]] = rrrrs_w_1_z
+        out_actuator[_actuator_rrrrs[0][leg]] = rrrrs_w_1_x
+        out_actuator[_actuator_rrrrs[1][leg]] = rrrrs_w_1_y
+        out_actuator[_actuator_rrrrs[2][leg]] = rrrrs_w_1_z
         # (rrrrs-w_3) reciprocal vector 2
-        out_drive[_drive_rrrrs[3][leg]] = rrrrs_w_3_x
-        out_drive[_drive_rrrrs[4][leg]] = rrrrs_w_3_y
-        out_drive[_drive_rrrrs[5][leg]] = rrrrs_w_3_z
+        out_actuator[_actuator_rrrrs[3][leg]] = rrrrs_w_3_x
+        out_actuator[_actuator_rrrrs[4][leg]] = rrrrs_w_3_y
+        out_actuator[_actuator_rrrrs[5][leg]] = rrrrs_w_3_z
     for leg, k in legs[1]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
@@ -9464,7 +9749,7 @@ def _run_legs(m, X, V, A):
         rrrs_N_1_in_axes1_z = (
         rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 + rrrs_N_2_in_axes2_y*rrrs_c_2
         )
-        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_in_axes3_x = (
@@ -9498,24 +9783,24 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z
         )
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+            _TOLERANCE * rrrs_size)
         )
         # (rrrs-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rrrs[0][leg]] = rrrs_c_true_x
         out_leg_force[_leg_force_rrrs[1][leg]] = rrrs_c_true_y
         out_leg_force[_leg_force_rrrs[2][leg]] = rrrs_c_true_z
         # (rrrs-w_1) reciprocal vector 1
-        out_drive[_drive_rrrs[0][leg]] = rrrs_w_1_x
-        out_drive[_drive_rrrs[1][leg]] = rrrs_w_1_y
-        out_drive[_drive_rrrs[2][leg]] = rrrs_w_1_z
+        out_actuator[_actuator_rrrs[0][leg]] = rrrs_w_1_x
+        out_actuator[_actuator_rrrs[1][leg]] = rrrs_w_1_y
+        out_actuator[_actuator_rrrs[2][leg]] = rrrs_w_1_z
         # (rrrs-w_2) reciprocal vector 2
-        out_drive[_drive_rrrs[3][leg]] = rrrs_w_2_x
-        out_drive[_drive_rrrs[4][leg]] = rrrs_w_2_y
-        out_drive[_drive_rrrs[5][leg]] = rrrs_w_2_z
-    return ok, (out_leg_force, out_drive,)
+        out_actuator[_actuator_rrrs[3][leg]] = rrrs_w_2_x
+        out_actuator[_actuator_rrrs[4][leg]] = rrrs_w_2_y
+        out_actuator[_actuator_rrrs[5][leg]] = rrrs_w_2_z
+    return ok, (out_leg_force, out_actuator,)
 
 
 # potential: 261 mul, 190 add, 6 div, 6 sqrt, 2 trig
@@ -9572,7 +9857,7 @@ def _run_potential(m, X):
         R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
         R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
-    sums = [0.0] * 1
+    potential_rrrrs, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_b_in_spec1_x,
@@ -9696,15 +9981,13 @@ def _run_potential(m, X):
             rrrrs_b_in_spec1_z*rrrrs_link2_mass + rrrrs_b_in_spec1_z*rrrrs_link3_mass)
         )
         ok = (
-        ok & m.every(leg, (abs(rrrrs_h_3_t_10) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+        ok & (abs(rrrrs_h_3_t_10) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_h_3_t_20) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_21 >=
-            0.0))
+            0.0)
         )
-        sums = m.added(sums, leg, (
-        -rrrrs_potential_t_11,
-        ))
-    potential_rrrrs, = sums
-    sums = [0.0] * 1
+        # (potential) potential energy
+        potential_rrrrs += -rrrrs_potential_t_11
+    potential_t_2, = [0.0] * 1
     for leg, k in legs[1]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
@@ -9803,13 +10086,11 @@ def _run_potential(m, X):
             rrrs_b_in_spec1_z*rrrs_link2_mass)
         )
         ok = (
-        ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
         )
-        sums = m.added(sums, leg, (
-        rrrs_potential_t_8,
-        ))
-    potential_t_2, = sums
+        # (potential) potential energy
+        potential_t_2 += rrrs_potential_t_8
     # (potential) potential energy
     potential = potential_rrrrs - potential_t - potential_t_2
     # (potential) potential energy
@@ -9869,7 +10150,7 @@ def _run_condition(m, X):
     out_reach = m.zeros("reach")
     # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
-    sums = [0.0] * 1
+    spread_rrrrs, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_rrrrs_rho2_3_t, inv_rrrrs_size, inv_rrrrs_size_t, inv_rrrrs_size_t_2,
@@ -10023,7 +10304,7 @@ def _run_condition(m, X):
         rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y -
             axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x)
         )
-        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_pivot_size = abs(rrrrs_rho2_1)
         rrrrs_pivot_size_2 = abs(rrrrs_rho2_3)
         rrrrs_pivot_size_3 = abs(rrrrs_v_1_in_axes4_z)
@@ -10050,15 +10331,14 @@ def _run_condition(m, X):
             rrrrs_spread_t_3*rrrrs_spread_t_3
         )
         clear = (
-        clear & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+        clear & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) &
             (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
-            _TOLERANCE * rrrrs_size))
+            _TOLERANCE * rrrrs_size)
         )
-        reached = reached & m.every(leg, (rrrrs_disc_3 >= 0.0))
-        sums = m.added(sums, leg, (
-        rrrrs_spread_t_4,
-        ))
+        reached = reached & (rrrrs_disc_3 >= 0.0)
+        # (spread) rms distance of the platform points from their centroid
+        spread_rrrrs += rrrrs_spread_t_4
         # (rrrrs-w_1) reciprocal vector 1
         out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_x
         out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_y
@@ -10079,11 +10359,10 @@ def _run_condition(m, X):
         out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
         # (rrrrs-w_3) reciprocal vector 2
         out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
-        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrrrs[0][leg]] = rrrrs_least_pivots
         out_reach[_reach_rrrrs[0][leg]] = rrrrs_disc_3
-    spread_rrrrs, = sums
-    sums = [0.0] * 1
+    spread_rrrs, = [0.0] * 1
     for leg, k in legs[1]:
         (
         inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
@@ -10209,7 +10488,7 @@ def _run_condition(m, X):
         rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
             axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x)
         )
-        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_pivot_size = abs(rrrs_rho2_1)
         rrrs_pivot_size_2 = abs(rrrs_rho2_2)
         rrrs_pivot_size_3 = abs(rrrs_v_1_in_axes3_z)
@@ -10236,15 +10515,13 @@ def _run_condition(m, X):
             rrrs_spread_t_3*rrrs_spread_t_3
         )
         clear = (
-        clear & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) &
-            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size))
+        clear & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE *
+            rrrs_size) & (abs(rrrs_r_2_in_axes3_y) > _TOLERANCE * rrrs_size)
         )
-        reached = reached & m.every(leg, (rrrs_disc_2 >= 0.0))
-        sums = m.added(sums, leg, (
-        rrrs_spread_t_4,
-        ))
+        reached = reached & (rrrs_disc_2 >= 0.0)
+        # (spread) rms distance of the platform points from their centroid
+        spread_rrrs += rrrs_spread_t_4
         # (rrrs-w_1) reciprocal vector 1
         out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
         out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
@@ -10261,10 +10538,9 @@ def _run_condition(m, X):
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
-        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrrs[0][leg]] = rrrs_least_pivots
         out_reach[_reach_rrrs[0][leg]] = rrrs_disc_2
-    spread_rrrs, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(0.3333333333333333*spread_rrrrs + 0.3333333333333333*spread_rrrs)
     # (spread) rms distance of the platform points from their centroid
@@ -10314,18 +10590,18 @@ def _steps_dynamics(m, X, V):
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 7)
-    subtract_2 = required - extend_1
-    tau = _solve(H, subtract_2)
+    subtract_1 = required - extend_1
+    tau = _solve(H, subtract_1)
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H, tau)
-    extend_2 = _extended(wrench, 7)
-    add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z
-    A = _solve(M, subtract_4)
+    extend_1 = _extended(wrench, 7)
+    add_1 = times_1 + extend_1
+    subtract_1 = add_1 - Z
+    A = _solve(M, subtract_1)
     return (A,)
 
 
@@ -10337,10 +10613,10 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 7)
-    subtract_2 = required - extend_1
-    solve_3 = _solve(H, subtract_2)
-    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    forces = _with_forces(leg_force, solve_3, drive, [0, 0, 0, 1, 1, 2, 2])
+    subtract_1 = required - extend_1
+    solve_1 = _solve(H, subtract_1)
+    leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
+    forces = _with_forces(leg_force, solve_1, actuator, [0, 0, 0, 1, 1, 2, 2])
     return (forces,)
 
 
@@ -10361,16 +10637,16 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths, length)
-    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5, 6])
-    sigma = _singular_values(divide_rows_2)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5, 6])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q[[0, 1, 2, 4, 5, 7, 8]]
-    subtract_2 = q_actuated - take_1
-    gap = _wrapped(subtract_2, [0, 1, 2, 3, 4, 5, 6])
+    subtract_1 = q_actuated - take_1
+    gap = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5, 6])
     return (gap,)
 
 
@@ -10442,26 +10718,26 @@ def _steps_rotation(m, X):
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
-    join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    X = _extended(join_2, 8)
+    join_1 = np.concatenate((t, quaternion_of_rotation_1))
+    X = _extended(join_1, 8)
     return (X,)
 
 
 def _steps_X_dot(m, X, V):
     take_1 = V[3:6]
     take_2 = X[3:7]
-    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
-    take_4 = V[0:3]
-    join_5 = np.concatenate((take_4, quaternion_rate_3))
-    take_6 = V[6:7]
-    X_dot = np.concatenate((join_5, take_6))
+    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
+    take_3 = V[0:3]
+    join_1 = np.concatenate((take_3, quaternion_rate_1))
+    take_4 = V[6:7]
+    X_dot = np.concatenate((join_1, take_4))
     return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
-    join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    X = _extended(join_2, 8)
+    join_1 = np.concatenate((t, quaternion_of_rpy_1))
+    X = _extended(join_1, 8)
     return (X,)
 
 
@@ -10472,11 +10748,11 @@ def _steps_retract(m, X, step):
     take_4 = step[0:3]
     take_5 = step[3:6]
     take_6 = step[6:7]
-    turn_quaternion_7 = _turned(take_2, take_5)
-    add_8 = take_1 + take_4
-    add_9 = take_3 + take_6
-    join_10 = np.concatenate((add_8, turn_quaternion_7))
-    X_moved = np.concatenate((join_10, add_9))
+    turn_quaternion_1 = _turned(take_2, take_5)
+    add_1 = take_1 + take_4
+    add_2 = take_3 + take_6
+    join_1 = np.concatenate((add_1, turn_quaternion_1))
+    X_moved = np.concatenate((join_1, add_2))
     return (X_moved,)
 
 
@@ -10487,11 +10763,11 @@ def _steps_difference(m, X0, X1):
     take_4 = X1[0:3]
     take_5 = X1[3:7]
     take_6 = X1[7:8]
-    turn_between_7 = _turn_between(take_2, take_5)
-    subtract_8 = take_4 - take_1
-    subtract_9 = take_6 - take_3
-    join_10 = np.concatenate((subtract_8, turn_between_7))
-    step = np.concatenate((join_10, subtract_9))
+    turn_between_1 = _turn_between(take_2, take_5)
+    subtract_1 = take_4 - take_1
+    subtract_2 = take_6 - take_3
+    join_1 = np.concatenate((subtract_1, turn_between_1))
+    step = np.concatenate((join_1, subtract_2))
     return (step,)
 
 
@@ -10502,23 +10778,23 @@ def _steps_interpolate(m, X0, X1, s):
     take_4 = X1[0:3]
     take_5 = X1[3:7]
     take_6 = X1[7:8]
-    turn_between_7 = _turn_between(take_2, take_5)
-    subtract_8 = take_4 - take_1
-    subtract_9 = take_6 - take_3
-    join_10 = np.concatenate((subtract_8, turn_between_7))
-    join_11 = np.concatenate((join_10, subtract_9))
-    scale_12 = join_11 * s
-    take_13 = X0[0:3]
-    take_14 = X0[3:7]
-    take_15 = X0[7:8]
-    take_16 = scale_12[0:3]
-    take_17 = scale_12[3:6]
-    take_18 = scale_12[6:7]
-    turn_quaternion_19 = _turned(take_14, take_17)
-    add_20 = take_13 + take_16
-    add_21 = take_15 + take_18
-    join_22 = np.concatenate((add_20, turn_quaternion_19))
-    X = np.concatenate((join_22, add_21))
+    turn_between_1 = _turn_between(take_2, take_5)
+    subtract_1 = take_4 - take_1
+    subtract_2 = take_6 - take_3
+    join_1 = np.concatenate((subtract_1, turn_between_1))
+    join_2 = np.concatenate((join_1, subtract_2))
+    scale_1 = join_2 * s
+    take_7 = X0[0:3]
+    take_8 = X0[3:7]
+    take_9 = X0[7:8]
+    take_10 = scale_1[0:3]
+    take_11 = scale_1[3:6]
+    take_12 = scale_1[6:7]
+    turn_quaternion_1 = _turned(take_8, take_11)
+    add_1 = take_7 + take_10
+    add_2 = take_9 + take_12
+    join_3 = np.concatenate((add_1, turn_quaternion_1))
+    X = np.concatenate((join_3, add_2))
     return (X,)
 
 

@@ -54,6 +54,18 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+#define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
+
+/* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
+#define NQ ((size_t)PLANAR_3PRR_NQ)
+#define NV ((size_t)PLANAR_3PRR_NV)
+#define NU ((size_t)PLANAR_3PRR_NU)
+#define NC ((size_t)PLANAR_3PRR_NC)
+#define NW ((size_t)PLANAR_3PRR_NW)
+#define NJ ((size_t)PLANAR_3PRR_NJ)
+#define NL ((size_t)3)
+#define LEGS_OF_prr ((size_t)3)
+
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
@@ -114,6 +126,12 @@ INLINE void clear(real *x, size_t n)
     for (size_t i = 0; i < n; ++i) {
         x[i] = 0;
     }
+}
+
+/* What a leg adds to a sum, or gives alone. */
+INLINE void gather(real *sum, int add, real term)
+{
+    *sum = add ? *sum + term : term;
 }
 
 INLINE int is_finite(real x)
@@ -441,28 +459,28 @@ static int acceptable(const planar_3prr_params *p)
     ok &= all_zero(&p->platform_centre_of_mass[0] + 2, 1, 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_planar_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->prr_base_point[0][0], 9);
-    ok &= all_zero(&p->prr_base_point[0][0] + 2, 3, 3);
-    ok &= all_within(&p->prr_base_frame[0][0][0], 27);
-    ok &= all_rotations(&p->prr_base_frame[0][0][0], 3);
-    ok &= all_about_z(&p->prr_base_frame[0][0][0], 3);
-    ok &= all_within(&p->prr_platform_point[0][0], 9);
-    ok &= all_zero(&p->prr_platform_point[0][0] + 2, 3, 3);
-    ok &= all_within(&p->prr_platform_joint_offset[0][0], 9);
-    ok &= all_zero(&p->prr_platform_joint_offset[0][0] + 1, 3, 3);
-    ok &= all_zero(&p->prr_platform_joint_offset[0][0] + 2, 3, 3);
-    ok &= all_within(&p->prr_link1_mass[0], 3);
-    ok &= none_negative(&p->prr_link1_mass[0], 3);
-    ok &= all_within(&p->prr_link1_centre_of_mass[0][0], 9);
-    ok &= all_zero(&p->prr_link1_centre_of_mass[0][0] + 2, 3, 3);
-    ok &= all_within(&p->prr_link1_inertia[0][0][0], 27);
-    ok &= all_planar_inertias(&p->prr_link1_inertia[0][0][0], 3);
-    ok &= all_within(&p->prr_link2_mass[0], 3);
-    ok &= none_negative(&p->prr_link2_mass[0], 3);
-    ok &= all_within(&p->prr_link2_centre_of_mass[0][0], 9);
-    ok &= all_zero(&p->prr_link2_centre_of_mass[0][0] + 2, 3, 3);
-    ok &= all_within(&p->prr_link2_inertia[0][0][0], 27);
-    ok &= all_planar_inertias(&p->prr_link2_inertia[0][0][0], 3);
+    ok &= all_within(&p->prr_base_point[0][0], 3*LEGS_OF_prr);
+    ok &= all_zero(&p->prr_base_point[0][0] + 2, LEGS_OF_prr, 3);
+    ok &= all_within(&p->prr_base_frame[0][0][0], 9*LEGS_OF_prr);
+    ok &= all_rotations(&p->prr_base_frame[0][0][0], LEGS_OF_prr);
+    ok &= all_about_z(&p->prr_base_frame[0][0][0], LEGS_OF_prr);
+    ok &= all_within(&p->prr_platform_point[0][0], 3*LEGS_OF_prr);
+    ok &= all_zero(&p->prr_platform_point[0][0] + 2, LEGS_OF_prr, 3);
+    ok &= all_within(&p->prr_platform_joint_offset[0][0], 3*LEGS_OF_prr);
+    ok &= all_zero(&p->prr_platform_joint_offset[0][0] + 1, LEGS_OF_prr, 3);
+    ok &= all_zero(&p->prr_platform_joint_offset[0][0] + 2, LEGS_OF_prr, 3);
+    ok &= all_within(&p->prr_link1_mass[0], LEGS_OF_prr);
+    ok &= none_negative(&p->prr_link1_mass[0], LEGS_OF_prr);
+    ok &= all_within(&p->prr_link1_centre_of_mass[0][0], 3*LEGS_OF_prr);
+    ok &= all_zero(&p->prr_link1_centre_of_mass[0][0] + 2, LEGS_OF_prr, 3);
+    ok &= all_within(&p->prr_link1_inertia[0][0][0], 9*LEGS_OF_prr);
+    ok &= all_planar_inertias(&p->prr_link1_inertia[0][0][0], LEGS_OF_prr);
+    ok &= all_within(&p->prr_link2_mass[0], LEGS_OF_prr);
+    ok &= none_negative(&p->prr_link2_mass[0], LEGS_OF_prr);
+    ok &= all_within(&p->prr_link2_centre_of_mass[0][0], 3*LEGS_OF_prr);
+    ok &= all_zero(&p->prr_link2_centre_of_mass[0][0] + 2, LEGS_OF_prr, 3);
+    ok &= all_within(&p->prr_link2_inertia[0][0][0], 9*LEGS_OF_prr);
+    ok &= all_planar_inertias(&p->prr_link2_inertia[0][0][0], LEGS_OF_prr);
     return ok;
 }
 
@@ -472,11 +490,11 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real m_star_prr = 0;
-    real h_star_prr_in_platform_x = 0;
-    real h_star_prr_in_platform_y = 0;
-    real J_star_prr_in_platform_xx = 0;
-    real J_star_prr_in_platform_zz = 0;
+    real m_star_of_legs = 0;
+    real h_star_in_platform_x_of_legs = 0;
+    real h_star_in_platform_y_of_legs = 0;
+    real J_star_in_platform_xx_of_legs = 0;
+    real J_star_t_5_of_legs = 0;
     real b_c_prr_in_platform_x = 0;
     real b_c_prr_in_platform_y = 0;
     real legs_size_prr = 0;
@@ -499,8 +517,8 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 4; ++leg) {
-        const size_t own = leg < 3 ? leg : 0;
+    for (size_t leg = 0; leg < FILLED(LEGS_OF_prr); ++leg) {
+        const size_t own = leg < LEGS_OF_prr ? leg : 0;
         const real prr_base_point_x = params->prr_base_point[own][0];
         const real prr_base_point_y = params->prr_base_point[own][1];
         const real prr_base_frame_xx = params->prr_base_frame[own][0][0];
@@ -543,7 +561,7 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
         const real prr_g_in_axes0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy;
         /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real inv_prr_size = 1/prr_size;
         /* (h_star) first moment about the platform origin */
         const real prr_h_star_t = prr_link2_mass*prr_platform_point_x;
@@ -583,23 +601,23 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         model->prr_potential_t[leg] = prr_potential_t;
         model->prr_size[leg] = prr_size;
         model->prr_size_t[leg] = prr_size_t;
-        m_star_prr += leg < 3 ? prr_link2_mass : 0;
-        h_star_prr_in_platform_x += leg < 3 ? prr_h_star_t : 0;
-        h_star_prr_in_platform_y += leg < 3 ? prr_h_star_t_2 : 0;
-        J_star_prr_in_platform_xx += leg < 3 ? prr_J_star_t_3 : 0;
-        J_star_prr_in_platform_zz += leg < 3 ? prr_J_star_t_4 : 0;
-        b_c_prr_in_platform_x += leg < 3 ? prr_platform_point_x : 0;
-        b_c_prr_in_platform_y += leg < 3 ? prr_platform_point_y : 0;
-        legs_size_prr += leg < 3 ? prr_size_t_2 : 0;
+        m_star_of_legs += leg < LEGS_OF_prr ? prr_link2_mass : 0;
+        h_star_in_platform_x_of_legs += leg < LEGS_OF_prr ? prr_h_star_t : 0;
+        h_star_in_platform_y_of_legs += leg < LEGS_OF_prr ? prr_h_star_t_2 : 0;
+        J_star_in_platform_xx_of_legs += leg < LEGS_OF_prr ? prr_J_star_t_3 : 0;
+        J_star_t_5_of_legs += leg < LEGS_OF_prr ? prr_J_star_t_4 : 0;
+        b_c_prr_in_platform_x += leg < LEGS_OF_prr ? prr_platform_point_x : 0;
+        b_c_prr_in_platform_y += leg < LEGS_OF_prr ? prr_platform_point_y : 0;
+        legs_size_prr += leg < LEGS_OF_prr ? prr_size_t_2 : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_prr + platform_mass;
+    const real m_star = m_star_of_legs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = h_star_prr_in_platform_x + h_star_t;
-    const real h_star_in_platform_y = h_star_prr_in_platform_y + h_star_t_2;
+    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
+    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xx = J_star_prr_in_platform_xx + J_star_t_3;
-    const real J_star_t_5 = J_star_in_platform_xx - J_star_prr_in_platform_zz - J_star_t_4 -
+    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
+    const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
         platform_inertia_zz;
     const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
     /* (Z_p) centripetal force and weight of the platform */
@@ -690,9 +708,10 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
 }
 
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
+#define PADDED(n) (((n) + 4)/4*4)
 INLINE size_t stride_of(size_t n, size_t w)
 {
-    return w == 1 ? (n + 4)/4*4 : n + 1;
+    return w == 1 ? PADDED(n) : n + 1;
 }
 
 INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
@@ -1041,14 +1060,14 @@ INLINE void rotation_of_angle(const real *a, real *x)
 /* X moved by a part of a small step. */
 static void moved(const real *X, const real *step, real part, real *to)
 {
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         to[i] = X[i] + part*step[i];
     }
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 345 mul, 229 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -1251,19 +1270,19 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t leg, size_t le
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + prr_Q_xx : prr_Q_xx;  /* M_tt_prr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_Q_xy : prr_Q_xy;  /* M_tt_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_Q_yy : prr_Q_yy;  /* M_tt_prr_yy */
+        gather(&terms[0*count + k], add, prr_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, prr_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, prr_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        terms[3*count + k] = add ? terms[3*count + k] + prr_M_ta_t : prr_M_ta_t;  /* M_ta_prr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + prr_M_ta_t_2 : prr_M_ta_t_2;  /* M_ta_prr_yz */
+        gather(&terms[3*count + k], add, prr_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, prr_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        terms[5*count + k] = add ? terms[5*count + k] + prr_M_aa_t : prr_M_aa_t;  /* M_aa_prr_zz */
+        gather(&terms[5*count + k], add, prr_M_aa_t);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[6*count + k] = add ? terms[6*count + k] + prr_U_x : prr_U_x;  /* Z_t_prr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + prr_U_y : prr_U_y;  /* Z_t_prr_y */
+        gather(&terms[6*count + k], add, prr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[7*count + k], add, prr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[8*count + k] = add ? terms[8*count + k] + prr_Z_a_t : prr_Z_a_t;  /* Z_a_prr_z */
+        gather(&terms[8*count + k], add, prr_Z_a_t);  /* Z_a_z_of_legs */
         /* (prr-w_1) reciprocal vector 1 */
         o[0*count + k] = prr_w_1_x;
         o[1*count + k] = prr_w_1_y;
@@ -1280,9 +1299,9 @@ INLINE void dynamics_place_prr(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
@@ -1294,46 +1313,46 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_prr_xx = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_prr_xx + m_star;
-        const real M_tt_prr_yy = sums[2*w + k];
-        const real M_tt_yy = M_tt_prr_yy + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[2*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_prr_xz = sums[3*w + k];
+        const real M_ta_xz_of_legs = sums[3*w + k];
         const real h_star_y = s[8*w + k];
-        const real M_ta_xz = M_ta_prr_xz - h_star_y;
-        const real M_ta_prr_yz = sums[4*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yz_of_legs = sums[4*w + k];
         const real h_star_x = s[7*w + k];
-        const real M_ta_yz = M_ta_prr_yz + h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
-        const real M_aa_prr_zz = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_prr_zz;
+        const real M_aa_zz_of_legs = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[9*w + k];
-        const real Z_t_prr_x = sums[6*w + k];
-        const real Z_t_x = Z_p_x + Z_t_prr_x;
+        const real Z_t_x_of_legs = sums[6*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[10*w + k];
-        const real Z_t_prr_y = sums[7*w + k];
-        const real Z_t_y = Z_p_y + Z_t_prr_y;
+        const real Z_t_y_of_legs = sums[7*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_prr_z = sums[8*w + k];
+        const real Z_a_z_of_legs = sums[8*w + k];
         const real Z_q_z = s[11*w + k];
-        const real Z_a_z = Z_a_prr_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
+        M[0*NV*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[3*w + k] = M_tt_xy;
-        M[4*w + k] = M_tt_yy;
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
+        M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[6*w + k] = M_ta_xz;
-        M[5*w + k] = M_ta_yz;
-        M[7*w + k] = M_ta_yz;
+        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*NV*w + k] = M_ta_xz;
+        M[(NV + 2)*w + k] = M_ta_yz;
+        M[(2*NV + 1)*w + k] = M_ta_yz;
         /* (M_aa) rotational block of M */
-        M[8*w + k] = M_aa_zz;
+        M[(2*NV + 2)*w + k] = M_aa_zz;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -1347,14 +1366,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[12] = {0}, sums[9] = {0}, terms_prr[9*LEGS(3)] = {0}, o_prr[6*LEGS(3)] = {0};
+    real s[12] = {0};
+    real sums[9] = {0};
+    real terms_prr[9*LEGS(LEGS_OF_prr)] = {0};
+    real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
     dynamics_before(m, 1, X, V, s);
-    dynamics_legs_prr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prr, o_prr);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        dynamics_place_prr(1, LEGS(3), o_prr, leg, leg, H, t);
+    dynamics_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+        dynamics_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, leg, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[n] = total(terms_prr + n*LEGS(3), 3);
+        sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -1362,17 +1384,19 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[12*LANES], sums[9*LANES], o_prr[6*LANES];
+    real s[12*LANES];
+    real sums[9*LANES];
+    real o_prr[6*LANES];
     dynamics_before(m, LANES, X, V, s);
     clear(sums, 9*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         dynamics_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prr);
         dynamics_place_prr(LANES, LANES, o_prr, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
-/* ---- M: 190 mul, 127 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -1485,14 +1509,14 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (M_aa) rotational block of M */
         const real prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + prr_Q_xx : prr_Q_xx;  /* M_tt_prr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_Q_xy : prr_Q_xy;  /* M_tt_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_Q_yy : prr_Q_yy;  /* M_tt_prr_yy */
+        gather(&terms[0*count + k], add, prr_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, prr_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, prr_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        terms[3*count + k] = add ? terms[3*count + k] + prr_M_ta_t : prr_M_ta_t;  /* M_ta_prr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + prr_M_ta_t_2 : prr_M_ta_t_2;  /* M_ta_prr_yz */
+        gather(&terms[3*count + k], add, prr_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, prr_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        terms[5*count + k] = add ? terms[5*count + k] + prr_M_aa_t : prr_M_aa_t;  /* M_aa_prr_zz */
+        gather(&terms[5*count + k], add, prr_M_aa_t);  /* M_aa_zz_of_legs */
         const real prr_size = m->prr_size[i];
         o[0*count + k] = UNLESS(prr_disc_1 >= 0);
         o[1*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
@@ -1512,66 +1536,71 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_prr_xx = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_prr_xx + m_star;
-        const real M_tt_prr_yy = sums[2*w + k];
-        const real M_tt_yy = M_tt_prr_yy + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[2*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_prr_xz = sums[3*w + k];
+        const real M_ta_xz_of_legs = sums[3*w + k];
         const real h_star_y = s[5*w + k];
-        const real M_ta_xz = M_ta_prr_xz - h_star_y;
-        const real M_ta_prr_yz = sums[4*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yz_of_legs = sums[4*w + k];
         const real h_star_x = s[4*w + k];
-        const real M_ta_yz = M_ta_prr_yz + h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
-        const real M_aa_prr_zz = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_prr_zz;
+        const real M_aa_zz_of_legs = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
+        M[0*NV*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[3*w + k] = M_tt_xy;
-        M[4*w + k] = M_tt_yy;
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
+        M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[6*w + k] = M_ta_xz;
-        M[5*w + k] = M_ta_yz;
-        M[7*w + k] = M_ta_yz;
+        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*NV*w + k] = M_ta_xz;
+        M[(NV + 2)*w + k] = M_ta_yz;
+        M[(2*NV + 1)*w + k] = M_ta_yz;
         /* (M_aa) rotational block of M */
-        M[8*w + k] = M_aa_zz;
+        M[(2*NV + 2)*w + k] = M_aa_zz;
         t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
     }
 }
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6] = {0}, sums[6] = {0}, terms_prr[6*LEGS(3)] = {0}, o_prr[2*LEGS(3)] = {0};
+    real s[6] = {0};
+    real sums[6] = {0};
+    real terms_prr[6*LEGS(LEGS_OF_prr)] = {0};
+    real o_prr[2*LEGS(LEGS_OF_prr)] = {0};
     M_before(m, 1, X, s);
-    M_legs_prr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prr, o_prr);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        M_place_prr(1, LEGS(3), o_prr, leg, t);
+    M_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+        M_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_prr + n*LEGS(3), 3);
+        sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     M_after(m, 1, s, sums, M, t);
 }
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6*LANES], sums[6*LANES], o_prr[2*LANES];
+    real s[6*LANES];
+    real sums[6*LANES];
+    real o_prr[2*LANES];
     M_before(m, LANES, X, s);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         M_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prr);
         M_place_prr(LANES, LANES, o_prr, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
 }
 
-/* ---- Z: 207 mul, 134 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -1727,10 +1756,10 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (Z_a) rotational part of Z */
         const real prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + prr_U_x : prr_U_x;  /* Z_t_prr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_U_y : prr_U_y;  /* Z_t_prr_y */
+        gather(&terms[0*count + k], add, prr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, prr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_Z_a_t : prr_Z_a_t;  /* Z_a_prr_z */
+        gather(&terms[2*count + k], add, prr_Z_a_t);  /* Z_a_z_of_legs */
         const real prr_size = m->prr_size[i];
         o[0*count + k] = UNLESS(prr_disc_1 >= 0);
         o[1*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
@@ -1750,15 +1779,15 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[7*w + k];
-        const real Z_t_prr_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_prr_x;
+        const real Z_t_x_of_legs = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[8*w + k];
-        const real Z_t_prr_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_prr_y;
+        const real Z_t_y_of_legs = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_prr_z = sums[2*w + k];
+        const real Z_a_z_of_legs = sums[2*w + k];
         const real Z_q_z = s[9*w + k];
-        const real Z_a_z = Z_a_prr_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -1770,31 +1799,36 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10] = {0}, sums[3] = {0}, terms_prr[3*LEGS(3)] = {0}, o_prr[2*LEGS(3)] = {0};
+    real s[10] = {0};
+    real sums[3] = {0};
+    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0};
+    real o_prr[2*LEGS(LEGS_OF_prr)] = {0};
     Z_before(m, 1, X, V, s);
-    Z_legs_prr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prr, o_prr);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        Z_place_prr(1, LEGS(3), o_prr, leg, t);
+    Z_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+        Z_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] = total(terms_prr + n*LEGS(3), 3);
+        sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     Z_after(1, s, sums, Z, t);
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10*LANES], sums[3*LANES], o_prr[2*LANES];
+    real s[10*LANES];
+    real sums[3*LANES];
+    real o_prr[2*LANES];
     Z_before(m, LANES, X, V, s);
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         Z_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prr);
         Z_place_prr(LANES, LANES, o_prr, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
-/* ---- H: 90 mul, 54 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- H ---- */
 INLINE void H_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -1880,9 +1914,9 @@ INLINE void H_place_prr(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
@@ -1891,25 +1925,27 @@ INLINE void H_place_prr(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4] = {0}, o_prr[6*LEGS(3)] = {0};
+    real s[4] = {0};
+    real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
     H_before(1, X, s);
-    H_legs_prr(m, 1, 0, 1, s, 0, LEGS(3), o_prr);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        H_place_prr(1, LEGS(3), o_prr, leg, leg, H, t);
+    H_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), o_prr);
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+        H_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, leg, H, t);
     }
 }
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4*LANES], o_prr[6*LANES];
+    real s[4*LANES];
+    real o_prr[6*LANES];
     H_before(LANES, X, s);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         H_legs_prr(m, LANES, leg, 0, s, 1, LANES, o_prr);
         H_place_prr(LANES, LANES, o_prr, leg, 0, H, t);
     }
 }
 
-/* ---- required: 245 mul, 166 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- required ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
     *A, real *s)
 {
@@ -2090,10 +2126,10 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t leg, size_t le
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + prr_c_x : prr_c_x;  /* R_t_t */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_c_y : prr_c_y;  /* R_t_t_2 */
+        gather(&terms[0*count + k], add, prr_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, prr_c_y);  /* R_t_y_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_R_a_t : prr_R_a_t;  /* R_a_prr_z */
+        gather(&terms[2*count + k], add, prr_R_a_t);  /* R_a_z_of_legs */
         /* (prr-w_1) reciprocal vector 1 */
         o[0*count + k] = prr_w_1_x;
         o[1*count + k] = prr_w_1_y;
@@ -2109,9 +2145,9 @@ INLINE void required_place_prr(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
     }
@@ -2121,16 +2157,16 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
-        const real R_t_t = sums[0*w + k];
+        const real R_t_x_of_legs = sums[0*w + k];
         const real f_p_x = s[10*w + k];
-        const real R_t_x = f_p_x - R_t_t;
-        const real R_t_t_2 = sums[1*w + k];
+        const real R_t_x = f_p_x - R_t_x_of_legs;
+        const real R_t_y_of_legs = sums[1*w + k];
         const real f_p_y = s[11*w + k];
-        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_y = f_p_y - R_t_y_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_prr_z = sums[2*w + k];
+        const real R_a_z_of_legs = sums[2*w + k];
         const real mu_p_z = s[12*w + k];
-        const real R_a_z = R_a_prr_z + mu_p_z;
+        const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -2142,14 +2178,17 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[13] = {0}, sums[3] = {0}, terms_prr[3*LEGS(3)] = {0}, o_prr[5*LEGS(3)] = {0};
+    real s[13] = {0};
+    real sums[3] = {0};
+    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0};
+    real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
     required_before(m, 1, X, V, A, s);
-    required_legs_prr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prr, o_prr);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        required_place_prr(1, LEGS(3), o_prr, leg, leg, H, t);
+    required_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+        required_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, leg, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] = total(terms_prr + n*LEGS(3), 3);
+        sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     required_after(1, s, sums, required);
 }
@@ -2157,17 +2196,19 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[13*LANES], sums[3*LANES], o_prr[5*LANES];
+    real s[13*LANES];
+    real sums[3*LANES];
+    real o_prr[5*LANES];
     required_before(m, LANES, X, V, A, s);
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         required_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prr);
         required_place_prr(LANES, LANES, o_prr, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
-/* ---- inverse_kinematics: 48 mul, 36 add, 0 div, 3 sqrt, 3 trig, every leg counted ---- */
+/* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2237,7 +2278,7 @@ INLINE void inverse_kinematics_place_prr(size_t w, size_t count, const real *o, 
     first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(2*leg)*w + k] = o[0*count + first + k];
+        q[2*leg*w + k] = o[0*count + first + k];
         q[(1 + 2*leg)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->total[k] += o[3*count + first + k];
@@ -2246,25 +2287,27 @@ INLINE void inverse_kinematics_place_prr(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4] = {0}, o_prr[4*LEGS(3)] = {0};
+    real s[4] = {0};
+    real o_prr[4*LEGS(LEGS_OF_prr)] = {0};
     inverse_kinematics_before(1, X, s);
-    inverse_kinematics_legs_prr(m, 1, 0, 1, s, 0, LEGS(3), o_prr);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        inverse_kinematics_place_prr(1, LEGS(3), o_prr, leg, leg, q, t);
+    inverse_kinematics_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), o_prr);
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+        inverse_kinematics_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, leg, q, t);
     }
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4*LANES], o_prr[4*LANES];
+    real s[4*LANES];
+    real o_prr[4*LANES];
     inverse_kinematics_before(LANES, X, s);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         inverse_kinematics_legs_prr(m, LANES, leg, 0, s, 1, LANES, o_prr);
         inverse_kinematics_place_prr(LANES, LANES, o_prr, leg, 0, q, t);
     }
 }
 
-/* ---- joint_rates: 75 mul, 48 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates ---- */
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2354,7 +2397,7 @@ INLINE void joint_rates_place_prr(size_t w, size_t count, const real *o, size_t 
     real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(2*leg)*w + k] = o[0*count + first + k];
+        qd[2*leg*w + k] = o[0*count + first + k];
         qd[(1 + 2*leg)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -2364,26 +2407,28 @@ INLINE void joint_rates_place_prr(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[7] = {0}, o_prr[5*LEGS(3)] = {0};
+    real s[7] = {0};
+    real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
     joint_rates_before(1, X, V, s);
-    joint_rates_legs_prr(m, 1, 0, 1, s, 0, LEGS(3), o_prr);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_rates_place_prr(1, LEGS(3), o_prr, leg, leg, qd, t);
+    joint_rates_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), o_prr);
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+        joint_rates_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, leg, qd, t);
     }
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[7*LANES], o_prr[5*LANES];
+    real s[7*LANES];
+    real o_prr[5*LANES];
     joint_rates_before(LANES, X, V, s);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         joint_rates_legs_prr(m, LANES, leg, 0, s, 1, LANES, o_prr);
         joint_rates_place_prr(LANES, LANES, o_prr, leg, 0, qd, t);
     }
 }
 
-/* ---- joint_accelerations: 129 mul, 78 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations ---- */
 INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
     *s)
 {
@@ -2511,7 +2556,7 @@ INLINE void joint_accelerations_place_prr(size_t w, size_t count, const real *o,
     size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(2*leg)*w + k] = o[0*count + first + k];
+        qdd[2*leg*w + k] = o[0*count + first + k];
         qdd[(1 + 2*leg)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -2522,26 +2567,28 @@ INLINE void joint_accelerations_place_prr(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[10] = {0}, o_prr[5*LEGS(3)] = {0};
+    real s[10] = {0};
+    real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
     joint_accelerations_before(1, X, V, A, s);
-    joint_accelerations_legs_prr(m, 1, 0, 1, s, 0, LEGS(3), o_prr);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_accelerations_place_prr(1, LEGS(3), o_prr, leg, leg, qdd, t);
+    joint_accelerations_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), o_prr);
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+        joint_accelerations_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, leg, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[10*LANES], o_prr[5*LANES];
+    real s[10*LANES];
+    real o_prr[5*LANES];
     joint_accelerations_before(LANES, X, V, A, s);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         joint_accelerations_legs_prr(m, LANES, leg, 0, s, 1, LANES, o_prr);
         joint_accelerations_place_prr(LANES, LANES, o_prr, leg, 0, qdd, t);
     }
 }
 
-/* ---- legs: 225 mul, 144 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs ---- */
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2711,32 +2758,33 @@ INLINE void legs_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, 
 }
 
 INLINE void legs_place_prr(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o[0*count + first + k];
-        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        drive[(3*leg)*w + k] = o[2*count + first + k];
-        drive[(1 + 3*leg)*w + k] = o[3*count + first + k];
+        leg_force[3*leg*w + k] = o[0*count + first + k];
+        leg_force[(3*leg + 1)*w + k] = o[1*count + first + k];
+        actuator[3*leg*w + k] = o[2*count + first + k];
+        actuator[(3*leg + 1)*w + k] = o[3*count + first + k];
         t->unreachable[k] += o[4*count + first + k];
         t->singular[k] += o[5*count + first + k];
     }
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
-    real s[10] = {0}, o_prr[6*LEGS(3)] = {0};
-    clear(leg_force, 9);
-    clear(drive, 9);
+    real s[10] = {0};
+    real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
+    clear(leg_force, 3*NL);
+    clear(actuator, 9);
     legs_before(1, X, V, A, s);
-    legs_legs_prr(m, 1, 0, 1, s, 0, LEGS(3), o_prr);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        legs_place_prr(1, LEGS(3), o_prr, leg, leg, leg_force, drive, t);
+    legs_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), o_prr);
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+        legs_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, leg, leg_force, actuator, t);
     }
 }
 
-/* ---- potential: 77 mul, 69 add, 0 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2819,7 +2867,7 @@ INLINE void potential_legs_prr(const prepared *m, size_t w, size_t leg, size_t l
             prr_h_2_in_spec2_y*prr_s_2) + prr_g_in_axes0_y*(prr_h_1_in_spec0_y + prr_potential_t +
             prr_c_2*prr_h_2_in_spec2_y + prr_h_2_in_spec2_x*prr_s_2);
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + prr_potential_t_2 : prr_potential_t_2;  /* potential_t_2 */
+        gather(&terms[0*count + k], add, prr_potential_t_2);  /* potential_of_legs */
         o[0*count + k] = UNLESS(prr_disc_1 >= 0);
     }
 }
@@ -2835,9 +2883,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
+        const real potential_of_legs = sums[0*w + k];
         const real potential_t = s[4*w + k];
-        const real potential_t_2 = sums[0*w + k];
-        const real potential_ = -potential_t - potential_t_2;
+        const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
@@ -2845,19 +2893,22 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[5] = {0}, sums[1] = {0}, terms_prr[1*LEGS(3)] = {0}, o_prr[1*LEGS(3)] = {0};
+    real s[5] = {0};
+    real sums[1] = {0};
+    real terms_prr[LEGS(LEGS_OF_prr)] = {0};
+    real o_prr[LEGS(LEGS_OF_prr)] = {0};
     potential_before(m, 1, X, s);
-    potential_legs_prr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prr, o_prr);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        potential_place_prr(1, LEGS(3), o_prr, leg, t);
+    potential_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+        potential_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_prr + n*LEGS(3), 3);
+        sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     potential_after(1, s, sums, potential);
 }
 
-/* ---- condition: 100 mul, 66 add, 3 div, 4 sqrt, 0 trig, every leg counted ---- */
+/* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
     verdict *t)
 {
@@ -2931,7 +2982,7 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t leg, size_t l
         const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
             axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
         /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real prr_pivot_size = magnitude(prr_v_2_in_axes0_y);
         const real inv_prr_size = m->inv_prr_size[i];
         const real prr_pivot = inv_prr_size*prr_pivot_size;
@@ -2944,14 +2995,14 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t leg, size_t l
         const real prr_spread_t_2 = b_c_in_platform_y - prr_platform_point_y;
         const real prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + prr_spread_t_3 : prr_spread_t_3;  /* spread_prr */
+        gather(&terms[0*count + k], add, prr_spread_t_3);  /* spread_prr */
         /* (prr-w_1) reciprocal vector 1 */
         o[0*count + k] = prr_w_1_x;
         o[1*count + k] = prr_w_1_y;
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = prr_H_a_1_z;
         /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[3*count + k] = prr_pivot;
         o[4*count + k] = prr_disc_1;
         o[7*count + k] = (prr_w_1_x + prr_w_1_y) + (prr_H_a_1_z + (prr_pivot + prr_disc_1));
@@ -2965,11 +3016,11 @@ INLINE void condition_place_prr(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        pivots[(leg)*w + k] = o[3*count + first + k];
-        reach[(leg)*w + k] = o[4*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        pivots[leg*w + k] = o[3*count + first + k];
+        reach[leg*w + k] = o[4*count + first + k];
         t->unreachable[k] += o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
         t->total[k] += o[7*count + first + k];
@@ -2993,14 +3044,17 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[4] = {0}, sums[1] = {0}, terms_prr[1*LEGS(3)] = {0}, o_prr[8*LEGS(3)] = {0};
+    real s[4] = {0};
+    real sums[1] = {0};
+    real terms_prr[LEGS(LEGS_OF_prr)] = {0};
+    real o_prr[8*LEGS(LEGS_OF_prr)] = {0};
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_prr(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prr, o_prr);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        condition_place_prr(1, LEGS(3), o_prr, leg, leg, H, pivots, reach, t);
+    condition_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
+    for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
+        condition_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, leg, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_prr + n*LEGS(3), 3);
+        sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     condition_after(m, 1, sums, lengths, t);
 }
@@ -3011,109 +3065,109 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, M_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, M_out);
+        refuse(NV*NV, M_out);
     }
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[3*LANES], M[9*LANES];
+    real X_in[NQ*LANES], M[NV*NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
     suspect(&why, code);
-    deliver(9, M, M_out);
+    deliver(NV*NV, M, M_out);
 }
 
 INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
-        check(3, 1, Z_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, Z_out);
+        refuse(NV, Z_out);
     }
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], Z[3*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
     suspect(&why, code);
-    deliver(3, Z, Z_out);
+    deliver(NV, Z, Z_out);
 }
 
 INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, H_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, H_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[3*LANES], H[9*LANES];
+    real X_in[NQ*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
     suspect(&why, code);
-    deliver(9, H, H_out);
+    deliver(NV*NU, H, H_out);
 }
 
 INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
-        check(6, 1, q_out, why.overflow);
+        check(NJ, 1, q_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, q_out);
+        refuse(NJ, q_out);
     }
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[3*LANES], q[6*LANES];
+    real X_in[NQ*LANES], q[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
     suspect(&why, code);
-    deliver(6, q, q_out);
+    deliver(NJ, q, q_out);
 }
 
 INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -3121,32 +3175,32 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(6, 1, qd_out, why.overflow);
+        check(NJ, 1, qd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, qd_out);
+        refuse(NJ, qd_out);
     }
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], qd[6*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
     suspect(&why, code);
-    deliver(6, qd, qd_out);
+    deliver(NJ, qd, qd_out);
 }
 
 INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
@@ -3154,34 +3208,34 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(6, 1, qdd_out, why.overflow);
+        check(NJ, 1, qdd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, qdd_out);
+        refuse(NJ, qdd_out);
     }
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd[6*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
     suspect(&why, code);
-    deliver(6, qdd, qdd_out);
+    deliver(NJ, qdd, qdd_out);
 }
 
 INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -3189,56 +3243,56 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, M_out, why.overflow);
-        check(3, 1, Z_out, why.overflow);
-        check(9, 1, H_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, M_out);
-        refuse(3, Z_out);
-        refuse(9, H_out);
+        refuse(NV*NV, M_out);
+        refuse(NV, Z_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], M[9*LANES], Z[3*LANES], H[9*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     suspect(&why, code);
-    deliver(9, M, M_out);
-    deliver(3, Z, Z_out);
-    deliver(9, H, H_out);
+    deliver(NV*NV, M, M_out);
+    deliver(NV, Z, Z_out);
+    deliver(NV*NU, H, H_out);
 }
 
-INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
+INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
+    real *a, const real *b, real *x, real *unsure, real *total)
 {
     for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(0)*w + k];
-        real a01 = a[(1)*w + k];
-        real a02 = a[(2)*w + k];
-        real b0 = b[0*w + k];
-        real a10 = a[(1*stride + 0)*w + k];
-        real a11 = a[(1*stride + 1)*w + k];
-        real a12 = a[(1*stride + 2)*w + k];
-        real b1 = b[1*w + k];
-        real a20 = a[(2*stride + 0)*w + k];
-        real a21 = a[(2*stride + 1)*w + k];
-        real a22 = a[(2*stride + 2)*w + k];
-        real b2 = b[2*w + k];
+        real a00 = a[(order[0]*stride + 0)*w + k];
+        real a01 = a[(order[0]*stride + 1)*w + k];
+        real a02 = a[(order[0]*stride + 2)*w + k];
+        real b0 = b[order[0]*w + k];
+        real a10 = a[(order[1]*stride + 0)*w + k];
+        real a11 = a[(order[1]*stride + 1)*w + k];
+        real a12 = a[(order[1]*stride + 2)*w + k];
+        real b1 = b[order[1]*w + k];
+        real a20 = a[(order[2]*stride + 0)*w + k];
+        real a21 = a[(order[2]*stride + 1)*w + k];
+        real a22 = a[(order[2]*stride + 2)*w + k];
+        real b2 = b[order[2]*w + k];
         const real f0 = 1/a00;
         const real d1 = a00*a11 - a10*a01;
         const real f1 = a00/d1;
@@ -3253,253 +3307,220 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         a22 -= g21*a12;
         b2 -= g21*b1;
         const real f2 = 1/a22;
-        const real x2 = (b2)*f2;
-        const real x1 = (b1)*f1 - a12*f1*x2;
+        const real x2 = b2*f2;
+        const real x1 = b1*f1 - a12*f1*x2;
         const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
         x[0*w + k] = x0;
         x[1*w + k] = x1;
         x[2*w + k] = x2;
         total[k] += x0 + (x1 + x2);
-        const real most0 = larger(magnitude(g20), magnitude(g21));
-        const real most1 = magnitude(g10);
-        const real most2 = larger(magnitude(f0), magnitude(f1));
-        const real most3 = magnitude(f2);
-        unsure[k] += UNLESS(most0 <= R(2.5)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(1000)) +
-            UNLESS(most3 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22));
+        const real most0 = larger(magnitude(g10)*(sizes[0]/sizes[1]),
+            magnitude(g20)*(sizes[0]/sizes[2]));
+        const real most1 = magnitude(g21)*(sizes[1]/sizes[2]);
+        unsure[k] += UNLESS(larger(magnitude(f0)*sizes[0], larger(magnitude(f1)*sizes[1],
+            magnitude(f2)*sizes[2])) <= R(1000));
+        unsure[k] += UNLESS(larger(most0, most1) <= R(10));
+        unsure[k] += UNLESS(is_finite(a00 + d1 + a22));
     }
 }
 
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real wrench_in[3], required[3] = {0}, H[9] = {0}, subtract_2[3] = {0}, unsure_4[1] = {0},
-        work[12];
+    static const size_t order_tau[] = {0, 1, 2};
+    static const real sizes_tau[] = {1.0, 1.0, 0.25};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(1, 3, H, subtract_2, tau_out, unsure_4, why.total);
-    if (unsure_4[0] > 0) {
-        set_matrix(3, 1, H, work);
-        solve_apart(3, subtract_2, work, tau_out, why.singular);
-        check(3, 1, tau_out, why.overflow);
+    eliminate_3(1, NV, order_tau, sizes_tau, H, subtract_1, tau_out, unsure_tau, why.total);
+    if (unsure_tau[0] > 0) {
+        set_matrix(NV, 1, H, work);
+        solve_apart(NV, subtract_1, work, tau_out, why.singular);
+        check(NV, 1, tau_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
-        check(3, 1, tau_out, why.overflow);
+        check(NU, 1, tau_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, tau_out);
+        refuse(NU, tau_out);
     }
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES], required[3*LANES],
-        H[9*LANES], subtract_2[3*LANES], tau[3*LANES];
+    static const size_t order_tau[] = {0, 1, 2};
+    static const real sizes_tau[] = {1.0, 1.0, 0.25};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
+        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
-    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(LANES, 3, H, subtract_2, tau, why.singular, why.total);
+    eliminate_3(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
     suspect(&why, code);
-    deliver(3, tau, tau_out);
-}
-
-INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
-{
-    for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(0)*w + k];
-        real a01 = a[(1)*w + k];
-        real a02 = a[(2)*w + k];
-        real b0 = b[0*w + k];
-        real a10 = a[(1*stride + 0)*w + k];
-        real a11 = a[(1*stride + 1)*w + k];
-        real a12 = a[(1*stride + 2)*w + k];
-        real b1 = b[1*w + k];
-        real a20 = a[(2*stride + 0)*w + k];
-        real a21 = a[(2*stride + 1)*w + k];
-        real a22 = a[(2*stride + 2)*w + k];
-        real b2 = b[2*w + k];
-        const real f0 = 1/a00;
-        const real d1 = a00*a11 - a10*a01;
-        const real f1 = a00/d1;
-        const real g10 = a10*f0;
-        a12 -= g10*a02;
-        b1 -= g10*b0;
-        const real g20 = a20*f0;
-        a21 -= g20*a01;
-        a22 -= g20*a02;
-        b2 -= g20*b0;
-        const real g21 = a21*f1;
-        a22 -= g21*a12;
-        b2 -= g21*b1;
-        const real f2 = 1/a22;
-        const real x2 = (b2)*f2;
-        const real x1 = (b1)*f1 - a12*f1*x2;
-        const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
-        x[0*w + k] = x0;
-        x[1*w + k] = x1;
-        x[2*w + k] = x2;
-        total[k] += x0 + (x1 + x2);
-        const real most0 = larger(magnitude(g20), magnitude(g21));
-        const real most1 = magnitude(g10);
-        const real most2 = larger(magnitude(f0), magnitude(f1));
-        const real most3 = magnitude(f2);
-        unsure[k] += UNLESS(most0 <= R(0.15625)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <=
-            R(62.5)) + UNLESS(most3 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22));
-    }
+    deliver(NU, tau, tau_out);
 }
 
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, int *code)
 {
-    real wrench_in[3], M[9] = {0}, Z[3] = {0}, H[9] = {0}, times_1[3] = {0}, add_3[3] = {0},
-        subtract_4[3] = {0}, unsure_7[1] = {0}, work[12];
+    static const size_t order_A[] = {0, 1, 2};
+    static const real sizes_A[] = {16.0, 16.0, 0.25};
+    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
+        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(tau, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
-    product(3, 3, 1, 1, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, 1, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    eliminate_1(1, 3, M, subtract_4, A_out, unsure_7, why.total);
-    if (unsure_7[0] > 0) {
-        set_matrix(3, 1, M, work);
-        solve_apart(3, subtract_4, work, A_out, why.singular);
-        check(3, 1, A_out, why.overflow);
+    eliminate_3(1, NV, order_A, sizes_A, M, subtract_1, A_out, unsure_A, why.total);
+    if (unsure_A[0] > 0) {
+        set_matrix(NV, 1, M, work);
+        solve_apart(NV, subtract_1, work, A_out, why.singular);
+        check(NV, 1, A_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
-        check(3, 1, A_out, why.overflow);
+        check(NV, 1, A_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, A_out);
+        refuse(NV, A_out);
     }
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES], M[9*LANES], Z[3*LANES],
-        H[9*LANES], times_1[3*LANES] = {0}, add_3[3*LANES], subtract_4[3*LANES], A[3*LANES];
+    static const size_t order_A[] = {0, 1, 2};
+    static const real sizes_A[] = {16.0, 16.0, 0.25};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
+        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
+        A[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    tau = side_by_side(3, tau, tau_in, why.total);
-    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    product(3, 3, 1, LANES, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    eliminate_1(LANES, 3, M, subtract_4, A, why.singular, why.total);
+    eliminate_3(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
     suspect(&why, code);
-    deliver(3, A, A_out);
+    deliver(NV, A, A_out);
 }
 
 INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, A, why.invalid);
+    check(NV, 1, A, why.invalid);
     const real *const completed = A;
-    check(3, 1, completed, why.overflow);
+    check(NV, 1, completed, why.overflow);
     judge(&why, code);
-    copy(3, completed, completed_out);
+    copy(NV, completed, completed_out);
     if (*code != OK) {
-        refuse(3, completed_out);
+        refuse(NV, completed_out);
     }
 }
 
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2};
-    real wrench_in[3], required[3] = {0}, H[9] = {0}, subtract_2[3] = {0}, solve_3[3] = {0},
-        unsure_5[1] = {0}, leg_force[9] = {0}, drive[9] = {0}, forces[9] = {0}, work[12];
+    static const size_t order_solve_1[] = {0, 1, 2};
+    static const real sizes_solve_1[] = {1.0, 1.0, 0.25};
+    static const size_t places_forces[] = {0, 1, 2};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(1, 3, H, subtract_2, solve_3, unsure_5, why.total);
-    if (unsure_5[0] > 0) {
-        set_matrix(3, 1, H, work);
-        solve_apart(3, subtract_2, work, solve_3, why.singular);
-        check(3, 1, solve_3, why.overflow);
+    eliminate_3(1, NV, order_solve_1, sizes_solve_1, H, subtract_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NV, 1, H, work);
+        solve_apart(NV, subtract_1, work, solve_1, why.singular);
+        check(NV, 1, solve_1, why.overflow);
     }
-    legs_run(m, X, V, A, leg_force, drive, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    legs_run(m, X, V, A, leg_force, actuator, &why);
+    for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
-    add_forces(3, 3, 1, places_0, solve_3, drive, forces);
-    check(9, 1, forces, why.overflow);
+    add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
+    check(NL*NL, 1, forces, why.overflow);
     judge(&why, code);
-    copy(9, forces, forces_out);
+    copy(NL*NL, forces, forces_out);
     if (*code != OK) {
-        refuse(9, forces_out);
+        refuse(NL*NL, forces_out);
     }
 }
 
 INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
-    real M[9] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
-    half_form(3, 1, V, M, kinetic);
+    half_form(NV, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
@@ -3515,12 +3536,12 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
 INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
-    static const size_t places_0[] = {2};
-    real length_in[1], H[9] = {0}, lengths[2] = {0}, legs[3] = {0}, reach[3] = {0}, choose_length_1[1]
-        = {0}, divide_rows_2[9] = {0}, sigma[3] = {0};
+    static const size_t places_divide_rows_1[] = {2};
+    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -3528,46 +3549,45 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 9; ++i) {
-        divide_rows_2[i] = H[i];
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
     }
-    divide_rows(1, 3, 1, places_0, choose_length_1, divide_rows_2);
-    singular_values(3, 3, divide_rows_2, sigma);
+    divide_rows(1, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(3, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(3, 1, sigma, why.overflow);
+    check(NV, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(3, sigma, sigma_out);
-    copy(3, legs, legs_out);
+    copy(NV, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(3, sigma_out);
-        refuse(3, legs_out);
+        refuse(NV, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real q[6] = {0}, take_1[3] = {0}, gap[3] = {0};
+    real q[NJ] = {0}, take_1[3] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(q_actuated, 3);
+    const real total_in = total(X, NQ) + total(q_actuated, NU);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, q_actuated, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(3, 1, places_0, q, take_1);
-    for (size_t i = 0; i < 3; ++i) {
+    take(3, 1, planar_3prr_ACTUATED, q, take_1);
+    for (size_t i = 0; i < NU; ++i) {
         gap[i] = q_actuated[i] - take_1[i];
     }
-    check(3, 1, gap, why.overflow);
+    check(NU, 1, gap, why.overflow);
     judge(&why, code);
-    copy(3, gap, gap_out);
+    copy(NU, gap, gap_out);
     if (*code != OK) {
-        refuse(3, gap_out);
+        refuse(NU, gap_out);
     }
 }
 
@@ -3575,23 +3595,23 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
 {
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, slope_out, why.overflow);
+        check(NV*NU, 1, slope_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, slope_out);
+        refuse(NV*NU, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
-    enum { N = 3, NV = 3, TRIALS = 12 };
+    enum { N = NU, TRIALS = 12 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[3] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     mismatch_one(m, found, q_actuated, gap, &code);
@@ -3634,30 +3654,30 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
-    real X[3] = {0};
+    real X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(q_actuated, 3) + total(X0, 3);
+    const real total_in = total(q_actuated, NU) + total(X0, NQ);
     if (!is_finite(total_in)) {
-        check(3, 1, q_actuated, why.invalid);
-        check(3, 1, X0, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
+        check(NQ, 1, X0, why.invalid);
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(3, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(3, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(3, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
-    real subtract_1[3] = {0};
+    real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, V, why.invalid);
-    for (size_t i = 0; i < 3; ++i) {
+    check(NV, 1, V, why.invalid);
+    for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
@@ -3672,85 +3692,85 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
     *code)
 {
-    real M[9] = {0}, momentum[3] = {0};
+    real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
-    product(3, 3, 1, 1, M, V, momentum);
-    check(3, 1, momentum, why.overflow);
+    product(NV, NV, 1, 1, M, V, momentum);
+    check(NV, 1, momentum, why.overflow);
     judge(&why, code);
-    copy(3, momentum, momentum_out);
+    copy(NV, momentum, momentum_out);
     if (*code != OK) {
-        refuse(3, momentum_out);
+        refuse(NV, momentum_out);
     }
 }
 
 INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
     int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], M[9*LANES], momentum[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     M_run_lanes(m, X, M, &why);
-    product(3, 3, 1, LANES, M, V, momentum);
-    add_up(3, momentum, why.total);
+    product(NV, NV, 1, LANES, M, V, momentum);
+    add_up(NV, momentum, why.total);
     suspect(&why, code);
-    deliver(3, momentum, momentum_out);
+    deliver(NV, momentum, momentum_out);
 }
 
 INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
-    real q[6] = {0}, margins[6] = {0};
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
+    real q[NJ] = {0}, margins[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 6; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
-    unlimited(6, 6, 1, places_0, margins, why.overflow);
+    unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     judge(&why, code);
-    copy(6, margins, margins_out);
+    copy(NJ, margins, margins_out);
     if (*code != OK) {
-        refuse(6, margins_out);
+        refuse(NJ, margins_out);
     }
 }
 
 INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
-    real X_in[3*LANES], q[6*LANES], margins[6*LANES];
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
+    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 6*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         margins[i] = q[i];
     }
-    unlimited(6, 6, LANES, places_0, margins, why.invalid);
+    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
     suspect(&why, code);
-    deliver(6, margins, margins_out);
+    deliver(NJ, margins, margins_out);
 }
 
 INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real q[6] = {0}, subtract_1[6] = {0}, within[1] = {0};
+    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 6; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(6, 1, subtract_1, within, why.overflow);
+    not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     judge(&why, code);
     copy(1, within, within_out);
@@ -3761,15 +3781,15 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
 
 INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real X_in[3*LANES], q[6*LANES], subtract_1[6*LANES], within[1*LANES] = {0};
+    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 6*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(6, LANES, subtract_1, within, why.invalid);
+    not_negative(NJ, LANES, subtract_1, within, why.invalid);
     add_up(1, within, why.total);
     suspect(&why, code);
     deliver(1, within, within_out);
@@ -3777,129 +3797,123 @@ INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_o
 
 INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real q_of_inverse_kinematics[6] = {0}, q[3] = {0};
+    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
-    take(3, 1, places_0, q_of_inverse_kinematics, q);
-    check(3, 1, q, why.overflow);
+    take(NU, 1, planar_3prr_ACTUATED, q_of_inverse_kinematics, q);
+    check(NU, 1, q, why.overflow);
     judge(&why, code);
-    copy(3, q, q_out);
+    copy(NU, q, q_out);
     if (*code != OK) {
-        refuse(3, q_out);
+        refuse(NU, q_out);
     }
 }
 
 INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real X_in[3*LANES], q_of_inverse_kinematics[6*LANES], q[3*LANES] = {0};
+    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(3, 1*LANES, places_0, q_of_inverse_kinematics, q);
-    add_up(3, q, why.total);
+    take(NU, LANES, planar_3prr_ACTUATED, q_of_inverse_kinematics, q);
+    add_up(NU, q, why.total);
     suspect(&why, code);
-    deliver(3, q, q_out);
+    deliver(NU, q, q_out);
 }
 
 INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real qd_of_joint_rates[6] = {0}, qd[3] = {0};
+    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
-    take(3, 1, places_0, qd_of_joint_rates, qd);
-    check(3, 1, qd, why.overflow);
+    take(NU, 1, planar_3prr_ACTUATED, qd_of_joint_rates, qd);
+    check(NU, 1, qd, why.overflow);
     judge(&why, code);
-    copy(3, qd, qd_out);
+    copy(NU, qd, qd_out);
     if (*code != OK) {
-        refuse(3, qd_out);
+        refuse(NU, qd_out);
     }
 }
 
 INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real X_in[3*LANES], V_in[3*LANES], qd_of_joint_rates[6*LANES], qd[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(3, 1*LANES, places_0, qd_of_joint_rates, qd);
-    add_up(3, qd, why.total);
+    take(NU, LANES, planar_3prr_ACTUATED, qd_of_joint_rates, qd);
+    add_up(NU, qd, why.total);
     suspect(&why, code);
-    deliver(3, qd, qd_out);
+    deliver(NU, qd, qd_out);
 }
 
 INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real qdd_of_joint_accelerations[6] = {0}, qdd[3] = {0};
+    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1, places_0, qdd_of_joint_accelerations, qdd);
-    check(3, 1, qdd, why.overflow);
+    take(NU, 1, planar_3prr_ACTUATED, qdd_of_joint_accelerations, qdd);
+    check(NU, 1, qdd, why.overflow);
     judge(&why, code);
-    copy(3, qdd, qdd_out);
+    copy(NU, qdd, qdd_out);
     if (*code != OK) {
-        refuse(3, qdd_out);
+        refuse(NU, qdd_out);
     }
 }
 
 INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of_joint_accelerations[6*LANES],
-        qdd[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
+        qdd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
-    add_up(3, qdd, why.total);
+    take(NU, LANES, planar_3prr_ACTUATED, qdd_of_joint_accelerations, qdd);
+    add_up(NU, qdd, why.total);
     suspect(&why, code);
-    deliver(3, qdd, qdd_out);
+    deliver(NU, qdd, qdd_out);
 }
 
 INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real H[9] = {0}, times_1[3] = {0}, power[1] = {0};
+    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3) + total(tau, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
     H_run(m, X, H, &why);
-    product(3, 3, 1, 1, H, tau, times_1);
-    inner(3, 1, times_1, V, power);
+    product(NV, NU, 1, 1, H, tau, times_1);
+    inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     judge(&why, code);
     copy(1, power, power_out);
@@ -3911,16 +3925,16 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
 INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], H[9*LANES], times_1[3*LANES] = {0},
-        power[1*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        power[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(3, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    tau = side_by_side(3, tau, tau_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
     H_run_lanes(m, X, H, &why);
-    product(3, 3, 1, LANES, H, tau, times_1);
-    inner(3, LANES, times_1, V, power);
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    inner(NV, LANES, times_1, V, power);
     add_up(1, power, why.total);
     suspect(&why, code);
     deliver(1, power, power_out);
@@ -3931,7 +3945,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     real R[4] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     const real *const take_1 = X + 2;
     rotation_of_angle(take_1, R);
     check(4, 1, R, why.overflow);
@@ -3944,7 +3958,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
 
 INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
-    real angle_of_rotation_1[1] = {0}, join_2[3] = {0};
+    real angle_of_rotation_1[1] = {0}, join_1[3] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 2) + total(R, 4);
@@ -3953,13 +3967,13 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
         check(4, 1, R, why.invalid);
     }
     angle_of_rotation(R, angle_of_rotation_1);
-    beside(1, 2, 1, t, angle_of_rotation_1, join_2);
-    const real *const X = join_2;
-    check(3, 1, X, why.overflow);
+    beside(1, 2, 1, t, angle_of_rotation_1, join_1);
+    const real *const X = join_1;
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(3, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(3, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -3967,97 +3981,97 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     const real *const X_dot = V;
-    check(3, 1, X_dot, why.overflow);
+    check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
-    copy(3, X_dot, X_dot_out);
+    copy(NQ, X_dot, X_dot_out);
     if (*code != OK) {
-        refuse(3, X_dot_out);
+        refuse(NQ, X_dot_out);
     }
 }
 
 INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
-    real X_moved[3] = {0};
+    real X_moved[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 3) + total(step, 3);
+    const real total_in = total(X, NQ) + total(step, NV);
     if (!is_finite(total_in)) {
-        check(3, 1, X, why.invalid);
-        check(3, 1, step, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, step, why.invalid);
     }
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(3, 1, X_moved, why.overflow);
+    check(NQ, 1, X_moved, why.overflow);
     judge(&why, code);
-    copy(3, X_moved, X_moved_out);
+    copy(NQ, X_moved, X_moved_out);
     if (*code != OK) {
-        refuse(3, X_moved_out);
+        refuse(NQ, X_moved_out);
     }
 }
 
 INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
-    static const size_t places_0[] = {2};
-    real subtract_1[3] = {0}, step[3] = {0};
+    static const size_t places_step[] = {2};
+    real subtract_1[NQ] = {0}, step[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 3) + total(X1, 3);
+    const real total_in = total(X0, NQ) + total(X1, NQ);
     if (!is_finite(total_in)) {
-        check(3, 1, X0, why.invalid);
-        check(3, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
     }
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NV; ++i) {
         step[i] = subtract_1[i];
     }
-    wrap_turns(1, 1, places_0, step);
-    check(3, 1, step, why.overflow);
+    wrap_turns(1, 1, places_step, step);
+    check(NV, 1, step, why.overflow);
     judge(&why, code);
-    copy(3, step, step_out);
+    copy(NV, step, step_out);
     if (*code != OK) {
-        refuse(3, step_out);
+        refuse(NV, step_out);
     }
 }
 
 INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    static const size_t places_0[] = {2};
-    real subtract_1[3] = {0}, wrap_turns_2[3] = {0}, scale_3[3] = {0}, X[3] = {0};
+    static const size_t places_wrap_turns_1[] = {2};
+    real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 3) + total(X1, 3) + total(s, 1);
+    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
     if (!is_finite(total_in)) {
-        check(3, 1, X0, why.invalid);
-        check(3, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
-    for (size_t i = 0; i < 3; ++i) {
-        wrap_turns_2[i] = subtract_1[i];
+    for (size_t i = 0; i < NQ; ++i) {
+        wrap_turns_1[i] = subtract_1[i];
     }
-    wrap_turns(1, 1, places_0, wrap_turns_2);
-    for (size_t i = 0; i < 3; ++i) {
-        scale_3[i] = wrap_turns_2[i]*s[i%(1)];
+    wrap_turns(1, 1, places_wrap_turns_1, wrap_turns_1);
+    for (size_t i = 0; i < NQ; ++i) {
+        scale_1[i] = wrap_turns_1[i]*s[i%(1)];
     }
-    for (size_t i = 0; i < 3; ++i) {
-        X[i] = X0[i] + scale_3[i];
+    for (size_t i = 0; i < NQ; ++i) {
+        X[i] = X0[i] + scale_1[i];
     }
-    check(3, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(3, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(3, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -4076,16 +4090,16 @@ size_t planar_3prr_M_batch(const planar_3prr_model *model, size_t n, const plana
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_lanes(model, X + 3*i, M + 9*i, codes);
+        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_M(model, X + 3*(i + k), M + 9*(i + k));
+                codes[k] = planar_3prr_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_M(model, X + 3*i, M + 9*i);
+        const int code = planar_3prr_M(model, X + NQ*i, M + NV*NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4105,16 +4119,16 @@ size_t planar_3prr_Z_batch(const planar_3prr_model *model, size_t n, const plana
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_lanes(model, X + 3*i, V + 3*i, Z + 3*i, codes);
+        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_Z(model, X + 3*(i + k), V + 3*(i + k), Z + 3*(i + k));
+                codes[k] = planar_3prr_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_Z(model, X + 3*i, V + 3*i, Z + 3*i);
+        const int code = planar_3prr_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4133,16 +4147,16 @@ size_t planar_3prr_H_batch(const planar_3prr_model *model, size_t n, const plana
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_lanes(model, X + 3*i, H + 9*i, codes);
+        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_H(model, X + 3*(i + k), H + 9*(i + k));
+                codes[k] = planar_3prr_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_H(model, X + 3*i, H + 9*i);
+        const int code = planar_3prr_H(model, X + NQ*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4162,16 +4176,16 @@ size_t planar_3prr_inverse_kinematics_batch(const planar_3prr_model *model, size
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_lanes(model, X + 3*i, q + 6*i, codes);
+        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_inverse_kinematics(model, X + 3*(i + k), q + 6*(i + k));
+                codes[k] = planar_3prr_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_inverse_kinematics(model, X + 3*i, q + 6*i);
+        const int code = planar_3prr_inverse_kinematics(model, X + NQ*i, q + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4191,16 +4205,16 @@ size_t planar_3prr_joint_rates_batch(const planar_3prr_model *model, size_t n, c
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_lanes(model, X + 3*i, V + 3*i, rates + 6*i, codes);
+        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_joint_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 6*(i + k));
+                codes[k] = planar_3prr_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_joint_rates(model, X + 3*i, V + 3*i, rates + 6*i);
+        const int code = planar_3prr_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4221,18 +4235,18 @@ size_t planar_3prr_joint_accelerations_batch(const planar_3prr_model *model, siz
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 6*i, codes);
+        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_joint_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
-                    accelerations + 6*(i + k));
+                codes[k] = planar_3prr_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    accelerations + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_joint_accelerations(model, X + 3*i, V + 3*i, A + 3*i, accelerations +
-            6*i);
+        const int code = planar_3prr_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4253,17 +4267,18 @@ size_t planar_3prr_dynamics_batch(const planar_3prr_model *model, size_t n, cons
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_lanes(model, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
+        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i + k),
-                    H + 9*(i + k));
+                codes[k] = planar_3prr_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
+                    NV*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_dynamics(model, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i);
+        const int code = planar_3prr_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
+            NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4285,19 +4300,19 @@ size_t planar_3prr_inverse_dynamics_batch(const planar_3prr_model *model, size_t
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_lanes(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau + 3*i,
-            codes);
+        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+            NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_inverse_dynamics(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k), wrench
-                    ? wrench + 3*(i + k) : NULL, tau + 3*(i + k));
+                codes[k] = planar_3prr_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_inverse_dynamics(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench +
-            3*i : NULL, tau + 3*i);
+        const int code = planar_3prr_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
+            + NW*i : NULL, tau + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4319,19 +4334,19 @@ size_t planar_3prr_forward_dynamics_batch(const planar_3prr_model *model, size_t
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_lanes(model, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A + 3*i,
-            codes);
+        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+            NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_forward_dynamics(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k),
-                    wrench ? wrench + 3*(i + k) : NULL, A + 3*(i + k));
+                codes[k] = planar_3prr_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
+                    wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_forward_dynamics(model, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench
-            + 3*i : NULL, A + 3*i);
+        const int code = planar_3prr_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
+            wrench + NW*i : NULL, A + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4356,8 +4371,8 @@ size_t planar_3prr_complete_acceleration_batch(const planar_3prr_model *model, s
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, wrench ?
-            wrench + 3*i : NULL, completed + 3*i);
+        const int code = planar_3prr_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
+            wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4378,8 +4393,8 @@ size_t planar_3prr_leg_reactions_batch(const planar_3prr_model *model, size_t n,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_leg_reactions(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i
-            : NULL, forces + 9*i);
+        const int code = planar_3prr_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
+            NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4399,7 +4414,7 @@ size_t planar_3prr_energy_batch(const planar_3prr_model *model, size_t n, const 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_energy(model, X + 3*i, V + 3*i, kinetic + 1*i, potential + 1*i);
+        const int code = planar_3prr_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4418,7 +4433,7 @@ size_t planar_3prr_condition_batch(const planar_3prr_model *model, size_t n, con
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_condition(model, X + 3*i, sigma + 3*i, legs + 3*i);
+        const int code = planar_3prr_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4437,7 +4452,7 @@ size_t planar_3prr_forward_kinematics_batch(const planar_3prr_model *model, size
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_forward_kinematics(model, q_actuated + 3*i, X0 + 3*i, X + 3*i);
+        const int code = planar_3prr_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4458,7 +4473,7 @@ size_t planar_3prr_dissipation_batch(const planar_3prr_model *model, size_t n, c
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_dissipation(model, X + 3*i, V + 3*i, dissipation + 1*i);
+        const int code = planar_3prr_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4478,16 +4493,16 @@ size_t planar_3prr_momentum_batch(const planar_3prr_model *model, size_t n, cons
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_lanes(model, X + 3*i, V + 3*i, momentum + 3*i, codes);
+        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_momentum(model, X + 3*(i + k), V + 3*(i + k), momentum + 3*(i + k));
+                codes[k] = planar_3prr_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_momentum(model, X + 3*i, V + 3*i, momentum + 3*i);
+        const int code = planar_3prr_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4507,16 +4522,16 @@ size_t planar_3prr_joint_margins_batch(const planar_3prr_model *model, size_t n,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_margins_lanes(model, X + 3*i, margins + 6*i, codes);
+        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_joint_margins(model, X + 3*(i + k), margins + 6*(i + k));
+                codes[k] = planar_3prr_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_joint_margins(model, X + 3*i, margins + 6*i);
+        const int code = planar_3prr_joint_margins(model, X + NQ*i, margins + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4536,16 +4551,16 @@ size_t planar_3prr_within_limits_batch(const planar_3prr_model *model, size_t n,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        within_limits_lanes(model, X + 3*i, within + 1*i, codes);
+        within_limits_lanes(model, X + NQ*i, within + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_within_limits(model, X + 3*(i + k), within + 1*(i + k));
+                codes[k] = planar_3prr_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_within_limits(model, X + 3*i, within + 1*i);
+        const int code = planar_3prr_within_limits(model, X + NQ*i, within + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4565,16 +4580,16 @@ size_t planar_3prr_actuator_positions_batch(const planar_3prr_model *model, size
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_lanes(model, X + 3*i, q + 3*i, codes);
+        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_actuator_positions(model, X + 3*(i + k), q + 3*(i + k));
+                codes[k] = planar_3prr_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_actuator_positions(model, X + 3*i, q + 3*i);
+        const int code = planar_3prr_actuator_positions(model, X + NQ*i, q + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4594,16 +4609,16 @@ size_t planar_3prr_actuator_rates_batch(const planar_3prr_model *model, size_t n
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_lanes(model, X + 3*i, V + 3*i, rates + 3*i, codes);
+        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_actuator_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 3*(i + k));
+                codes[k] = planar_3prr_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_actuator_rates(model, X + 3*i, V + 3*i, rates + 3*i);
+        const int code = planar_3prr_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4624,18 +4639,18 @@ size_t planar_3prr_actuator_accelerations_batch(const planar_3prr_model *model, 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_lanes(model, X + 3*i, V + 3*i, A + 3*i, accelerations + 3*i, codes);
+        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_actuator_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
-                    accelerations + 3*(i + k));
+                codes[k] = planar_3prr_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
+                    k), accelerations + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_actuator_accelerations(model, X + 3*i, V + 3*i, A + 3*i,
-            accelerations + 3*i);
+        const int code = planar_3prr_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4656,17 +4671,17 @@ size_t planar_3prr_power_batch(const planar_3prr_model *model, size_t n, const p
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_lanes(model, X + 3*i, V + 3*i, tau + 3*i, power + 1*i, codes);
+        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_3prr_power(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k), power + 1*(i +
+                codes[k] = planar_3prr_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
                     k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_3prr_power(model, X + 3*i, V + 3*i, tau + 3*i, power + 1*i);
+        const int code = planar_3prr_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4684,7 +4699,7 @@ size_t planar_3prr_rotation_batch(size_t n, const planar_3prr_real *X, planar_3p
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_rotation(X + 3*i, R + 4*i);
+        const int code = planar_3prr_rotation(X + NQ*i, R + 4*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4702,7 +4717,7 @@ size_t planar_3prr_pose_batch(size_t n, const planar_3prr_real *t, const planar_
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_pose(t + 2*i, R + 4*i, X + 3*i);
+        const int code = planar_3prr_pose(t + 2*i, R + 4*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4721,7 +4736,7 @@ size_t planar_3prr_X_dot_batch(size_t n, const planar_3prr_real *X, const planar
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_X_dot(X + 3*i, V + 3*i, X_dot + 3*i);
+        const int code = planar_3prr_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4740,7 +4755,7 @@ size_t planar_3prr_retract_batch(size_t n, const planar_3prr_real *X, const plan
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_retract(X + 3*i, step + 3*i, X_moved + 3*i);
+        const int code = planar_3prr_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4759,7 +4774,7 @@ size_t planar_3prr_difference_batch(size_t n, const planar_3prr_real *X0, const 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_difference(X0 + 3*i, X1 + 3*i, step + 3*i);
+        const int code = planar_3prr_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4778,7 +4793,7 @@ size_t planar_3prr_interpolate_batch(size_t n, const planar_3prr_real *X0, const
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_3prr_interpolate(X0 + 3*i, X1 + 3*i, s + 1*i, X + 3*i);
+        const int code = planar_3prr_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -89,7 +89,7 @@ _SHAPES = {  # of the arrays that functions give
     "qd": (6,),
     "qdd": (6,),
     "leg_force": (3, 3),
-    "drive": (3, 3),
+    "actuator": (3, 3),
     "potential": (1,),
     "lengths": (2,),
     "pivots": (3,),
@@ -151,7 +151,7 @@ _leg_force_rpr = (
     [0],
     [1],
 )
-_drive_rpr = (
+_actuator_rpr = (
     [0],
     [1],
 )
@@ -159,7 +159,7 @@ _leg_force_rrr = (
     [3],
     [4],
 )
-_drive_rrr = (
+_actuator_rrr = (
     [3],
     [4],
 )
@@ -167,7 +167,7 @@ _leg_force_prr = (
     [6],
     [7],
 )
-_drive_prr = (
+_actuator_prr = (
     [6],
     [7],
 )
@@ -746,7 +746,7 @@ def _prepare(p):
     # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
     rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
     rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
-    # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
     inv_rrr_rho2_1_t = 1.0/rrr_rho2_1_t
     inv_rrr_size = 1.0/rrr_size
     # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
@@ -796,7 +796,7 @@ def _prepare(p):
     prr_g_in_axes0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx
     # (prr-acc_2) acceleration of the reference point of link 2, less gravity
     prr_g_in_axes0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy
-    # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
     inv_prr_size = 1.0/prr_size
     # (h_star) first moment about the platform origin
     prr_h_star_t = prr_link2_mass*prr_platform_point_x
@@ -1141,50 +1141,41 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
+_BLOCK = 4096  # states
 _SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
-    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    """Prepared values of a function, and for each loop over legs (leg, its values): floats."""
     if name not in p._cache:
         shared, loops = p._prepared()[name]
-        rows, columns = [], []
+        rows = []
         for count, values in loops:
-            table = [np.broadcast_to(v, count) for v in values]
-            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
-            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
-        p._cache[name] = tuple(map(float, shared)), rows, columns
+            table = [np.broadcast_to(v, count).tolist() for v in values]
+            rows.append([(leg, tuple(v[leg] for v in table)) for leg in range(count)])
+        p._cache[name] = tuple(map(float, shared)), rows
     return p._cache[name]
-
-
-def _sqrt(x):
-    return x**0.5 if x >= 0.0 else np.nan
 
 
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
-    sqrt = staticmethod(_sqrt)
+    sqrt = staticmethod(math.sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda leg, good: good)
 
-    def __init__(self, p, states):
+    def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)[:2]
+        return _constants(self.p, name)
 
     def zeros(self, name):
         return [0.0] * math.prod(_SHAPES[name])
-
-    def added(self, sums, leg, terms):
-        """Sums over the legs so far."""
-        return [a + b for a, b in zip(sums, terms)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1196,7 +1187,7 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, ValueError):
             ok = False
         if ok and all(all(map(math.isfinite, array)) for array in arrays):
             return arrays
@@ -1204,54 +1195,66 @@ class _Floats:
 
 
 class _Arrays:
-    """Functions of many states at once: arrays (states,), and (legs, states)."""
+    """Functions of many states at once, in arrays (states,).
+
+    Attributes:
+        kept: replays, by their place among those of a block, for other blocks of the same size;
+            None where there are too few states for it to pay to record.
+    """
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
-    def __init__(self, p, states):
-        self.p, self.states = p, states
+    def __init__(self, p, states, kept=None):
+        self.p, self.states, self.kept, self.done = p, states, kept, 0
 
     def constants(self, name):
-        """Shared values, and (all legs, their values) once for each loop."""
-        shared, _, columns = _constants(self.p, name)
-        return shared, columns
+        """Shared values, and (leg, its values) for every leg of each loop.
+
+        As arrays without dimensions: beside arrays they are faster than floats.
+        """
+        if (name, "arrays") not in self.p._cache:
+            shared, loops = _constants(self.p, name)
+            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
+            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
+        return self.p._cache[name, "arrays"]
 
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, legs, good):
-        """Whether it holds for all legs."""
-        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
-
-    def added(self, sums, legs, terms):
-        """Sums over the legs, all at once."""
-        shape = (legs.stop, self.states)
-        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+    def computed(self, function, names, vectors):
+        """Flags and arrays (*shape, states) of a function."""
+        if self.kept is None:
+            flags, arrays = function(self, *vectors)
+        else:
+            if self.done not in self.kept:
+                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+            flags, arrays = self.kept[self.done].run(vectors)
+            self.done += 1
+        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = function(self, *vectors)
-        for a in arrays:
-            ok = ok & np.isfinite(a).all(axis=0)
+        ok, arrays = self.computed(function, names, vectors)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
-                a[:, ~ok] = np.nan
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+                a[..., ~ok] = np.nan
+        return arrays
 
 
 class _Judged(_Arrays):
     """The same, and why a state is impossible."""
 
-    def __init__(self, p, states):
-        super().__init__(p, states)
+    def __init__(self, p, states, kept=None):
+        super().__init__(p, states, kept)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = function(self, *vectors)
+        (valid, reached, clear), arrays = self.computed(function, names, vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            self.failed[code] |= np.logical_not(good)
+        return arrays
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1263,9 +1266,9 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _mode(p, states):
+def _mode(p, states, kept=None):
     """The faster way for so many states."""
-    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
@@ -1298,26 +1301,27 @@ def _one(steps, p, given, shapes, read, unbounded):
 
 
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
-    """Results at many states, block by block."""
+    """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
+    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
-    if count > _BLOCK:
+    if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
         # of intermediate arrays from block to block instead of giving its pages back.
         np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
-        for first in range(0, max(count, 1), _BLOCK):
-            block = slice(first, min(first + _BLOCK, count))
+        for stop in (*range(size, count, max(size, 1)), count):
+            block = slice(stop - size, stop)
             states = [_states_last(v[block]) for v in flat]
-            m, good = mode(p, block.stop - first), possible[block]
+            m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
-            _all_finite(compress(states, read), good)
+            good &= _finite(compress(states, read), size)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
+            good &= _finite([np.minimum(a, 0.0) for a in found] if unbounded else found, size)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1334,10 +1338,194 @@ def _states_last(a):
     return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
 
 
-def _all_finite(arrays, good):
-    """Clear the flags of states in which some entry is not finite."""
-    for a in arrays:
-        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+def _finite(arrays, states):
+    """In which states all entries of arrays (*shape, states) are finite."""
+    flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
+    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    if not np.all(good):  # or the sum is too large
+        good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
+    return good
+
+
+def _least(x, y, out):
+    return np.minimum(x, y, out=out)
+
+
+def _both(operation):
+    """An operation of recorded values, and the same with its operands the other way round."""
+    return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
+
+
+class _Recorded:
+    """A value of a function that runs to be recorded."""
+
+    def __init__(self, record, number):
+        self.record, self.number = record, number
+
+    __add__, __radd__ = _both(np.add)
+    __sub__, __rsub__ = _both(np.subtract)
+    __mul__, __rmul__ = _both(np.multiply)
+    __truediv__, __rtruediv__ = _both(np.divide)
+    __and__, __rand__ = _both(np.logical_and)
+    __gt__, __lt__ = _both(np.greater)
+    __ge__, __le__ = _both(np.greater_equal)
+
+    def __neg__(self):
+        return self.record.made(np.negative, self)
+
+    def __abs__(self):
+        return self.record.made(np.absolute, self)
+
+
+class _Record:
+    """The operations of a function, recorded by running it, and where their results stand.
+
+    Results share arrays: what is read for the last time makes room for the next, so that a few
+    arrays do, which stay in the processor's cache.
+
+    Attributes:
+        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
+        steps: (operation, numbers of its operands and of its result).
+        slots: number of a result -> (kind of array or "out", place).
+        counts: how many arrays there are of every kind.
+    """
+
+    def __init__(self, p, function, sizes):
+        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
+        self.constant, self.literals = [], {}
+        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
+        flags, arrays = function(self, *self.inputs)
+        self.is_judged = isinstance(flags, tuple)
+        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes = [len(array) for array in arrays]
+        for place, value in enumerate(v for array in arrays for v in array):
+            self.store(self.number(value), place)
+        self.counts = self.share()
+
+    # ---- the mode in which the function runs ----
+
+    def sqrt(self, x):
+        return self.made(np.sqrt, x)
+
+    def sin(self, x):
+        return self.made(np.sin, x)
+
+    def cos(self, x):
+        return self.made(np.cos, x)
+
+    def atan2(self, y, x):
+        return self.made(np.arctan2, y, x)
+
+    def least(self, x, y):
+        return self.made(_least, x, y)
+
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        self.name, (shared, loops) = name, _constants(self.p, name)
+        shared = self.named(shared)
+        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+
+    # ---- what is recorded ----
+
+    def named(self, values):
+        """Values for constants."""
+        found = [self.value("one") for _ in values]
+        self.constant += [v.number for v in found]
+        return found
+
+    def value(self, kind):
+        self.kinds.append(kind)
+        return _Recorded(self, len(self.kinds) - 1)
+
+    def number(self, value):
+        """Number of a value, which may be a literal."""
+        if isinstance(value, _Recorded):
+            return value.number
+        if value not in self.literals:
+            self.literals[value] = self.value("one").number
+        return self.literals[value]
+
+    def made(self, operation, *operands):
+        """The result of an operation."""
+        numbers = [self.number(operand) for operand in operands]
+        if all(self.kinds[n] == "one" for n in numbers):
+            kind = "one"
+        else:
+            kind = "flag" if operation in _OF_FLAGS else "state"
+        result = self.value(kind)
+        self.steps.append((operation, [*numbers, result.number]))
+        return result
+
+    def store(self, number, place):
+        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
+        if self.kinds[number] != "state" or number in self.slots:
+            copy = self.value("state").number
+            self.steps.append((np.positive, [number, copy]))
+            number = copy
+        self.slots[number] = "out", place
+
+    def share(self):
+        """Give results their places; how many there are of each kind."""
+        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
+        last.update(dict.fromkeys(self.flags, len(self.steps)))
+        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
+        for k, (_, (*operands, result)) in enumerate(self.steps):
+            for n in dict.fromkeys(operands):
+                kind, place = self.slots.get(n, ("given", 0))
+                if last[n] == k and kind in free:
+                    free[kind].append(place)
+            if result not in self.slots:
+                kind = self.kinds[result]
+                if not free[kind]:
+                    free[kind].append(counts[kind])
+                    counts[kind] += 1
+                self.slots[result] = kind, free[kind].pop()
+        return counts
+
+
+_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_RECORDS = {}  # by function
+
+
+class _Replay:
+    """A record on arrays of so many states, which are made once."""
+
+    def __init__(self, p, function, sizes, states):
+        if function not in _RECORDS:
+            _RECORDS[function] = _Record(p, function, sizes)
+        r = _RECORDS[function]
+        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
+        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
+        made["out"] = _rows(sum(r.sizes), states)
+        self.inputs = [_rows(size, states) for size in sizes]
+        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        at = {number: np.array(value) for value, number in r.literals.items()}
+        for values, given in zip(r.inputs, self.inputs):
+            at |= {v.number: row for v, row in zip(values, given)}
+        if r.name is not None:
+            shared, loops = _constants(p, r.name)
+            values = sum((k for legs in loops for _, k in legs), shared)
+            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
+        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
+        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
+        flags = [at[n] for n in r.flags]
+        self.flags = flags if r.is_judged else flags[0]
+
+    def run(self, vectors):
+        """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
+        for rows, vector in zip(self.inputs, vectors):
+            rows[:] = vector
+        for operation, operands in self.steps:
+            operation(*operands)
+        return self.flags, self.arrays
+
+
+def _rows(count, states, kind=float):
+    """Rows of so many states, a cache line apart from each other."""
+    return np.empty((count, states + 8), dtype=kind)[:, :states]
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1629,7 +1817,10 @@ def _run_dynamics(m, X, V):
     Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
-    sums = [0.0] * 9
+    (
+    M_tt_rpr_xx, M_tt_rpr_xy, M_tt_rpr_yy, M_ta_rpr_xz, M_ta_rpr_yz, M_aa_rpr_zz, Z_t_rpr_x,
+        Z_t_rpr_y, Z_a_rpr_z,
+    ) = [0.0] * 9
     for leg, k in legs[0]:
         (
         rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
@@ -1725,23 +1916,32 @@ def _run_dynamics(m, X, V):
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
         rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y
         ok = (
-        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
-            > _TOLERANCE * 0.62))
+        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
+            * 0.62)
         )
-        sums = m.added(sums, leg, (
-        rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x, rpr_U_y,
-            rpr_Z_a_t,
-        ))
+        # (M_tt) translational block of M
+        M_tt_rpr_xx += rpr_Q_xx
+        M_tt_rpr_xy += rpr_Q_xy
+        M_tt_rpr_yy += rpr_Q_yy
+        # (M_ta) coupling block of M
+        M_ta_rpr_xz += rpr_M_ta_t
+        M_ta_rpr_yz += rpr_M_ta_t_2
+        # (M_aa) rotational block of M
+        M_aa_rpr_zz += rpr_M_aa_t
+        # (Z_t) translational part of Z
+        Z_t_rpr_x += rpr_U_x
+        Z_t_rpr_y += rpr_U_y
+        # (Z_a) rotational part of Z
+        Z_a_rpr_z += rpr_Z_a_t
         # (rpr-w_2) reciprocal vector 2
         out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
         out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     (
-    M_tt_rpr_xx, M_tt_rpr_xy, M_tt_rpr_yy, M_ta_rpr_xz, M_ta_rpr_yz, M_aa_rpr_zz, Z_t_rpr_x,
-        Z_t_rpr_y, Z_a_rpr_z,
-    ) = sums
-    sums = [0.0] * 9
+    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz, Z_t_rrr_x,
+        Z_t_rrr_y, Z_a_rrr_z,
+    ) = [0.0] * 9
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz,
@@ -1869,7 +2069,7 @@ def _run_dynamics(m, X, V):
         rrr_d_Gamma_1_in_axes2_x = (
         rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
-        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
@@ -1910,23 +2110,32 @@ def _run_dynamics(m, X, V):
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
-        sums = m.added(sums, leg, (
-        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
-            rrr_Z_a_t,
-        ))
+        # (M_tt) translational block of M
+        M_tt_rrr_xx += rrr_Q_xx
+        M_tt_rrr_xy += rrr_Q_xy
+        M_tt_rrr_yy += rrr_Q_yy
+        # (M_ta) coupling block of M
+        M_ta_rrr_xz += rrr_M_ta_t
+        M_ta_rrr_yz += rrr_M_ta_t_2
+        # (M_aa) rotational block of M
+        M_aa_rrr_zz += rrr_M_aa_t
+        # (Z_t) translational part of Z
+        Z_t_rrr_x += rrr_U_x
+        Z_t_rrr_y += rrr_U_y
+        # (Z_a) rotational part of Z
+        Z_a_rrr_z += rrr_Z_a_t
         # (rrr-w_1) reciprocal vector 1
         out_H[_H_rrr[0][leg]] = rrr_w_1_x
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     (
-    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz, Z_t_rrr_x,
-        Z_t_rrr_y, Z_a_rrr_z,
-    ) = sums
-    sums = [0.0] * 9
+    M_tt_prr_xx, M_tt_prr_xy, M_tt_prr_yy, M_ta_prr_xz, M_ta_prr_yz, M_aa_prr_zz, Z_t_prr_x,
+        Z_t_prr_y, Z_a_prr_z,
+    ) = [0.0] * 9
     for leg, k in legs[2]:
         (
         inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
@@ -2054,22 +2263,26 @@ def _run_dynamics(m, X, V):
         prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y
         # (prr-H_a_1) moment of the column's unit force about the platform origin
         prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x
-        ok = (
-        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
-        )
-        sums = m.added(sums, leg, (
-        prr_Q_xx, prr_Q_xy, prr_Q_yy, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t, prr_U_x, prr_U_y,
-            prr_Z_a_t,
-        ))
+        ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
+        # (M_tt) translational block of M
+        M_tt_prr_xx += prr_Q_xx
+        M_tt_prr_xy += prr_Q_xy
+        M_tt_prr_yy += prr_Q_yy
+        # (M_ta) coupling block of M
+        M_ta_prr_xz += prr_M_ta_t
+        M_ta_prr_yz += prr_M_ta_t_2
+        # (M_aa) rotational block of M
+        M_aa_prr_zz += prr_M_aa_t
+        # (Z_t) translational part of Z
+        Z_t_prr_x += prr_U_x
+        Z_t_prr_y += prr_U_y
+        # (Z_a) rotational part of Z
+        Z_a_prr_z += prr_Z_a_t
         # (prr-w_1) reciprocal vector 1
         out_H[_H_prr[0][leg]] = prr_w_1_x
         out_H[_H_prr[1][leg]] = prr_w_1_y
         # (prr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prr[2][leg]] = prr_H_a_1_z
-    (
-    M_tt_prr_xx, M_tt_prr_xy, M_tt_prr_yy, M_ta_prr_xz, M_ta_prr_yz, M_aa_prr_zz, Z_t_prr_x,
-        Z_t_prr_y, Z_a_prr_z,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_prr_xx + M_tt_rpr_xx + M_tt_rrr_xx + m_star
     M_tt_xy = M_tt_prr_xy + M_tt_rpr_xy + M_tt_rrr_xy
@@ -2124,7 +2337,7 @@ def _run_M(m, X):
     # (h_star) first moment about the platform origin
     h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
-    sums = [0.0] * 6
+    M_tt_rpr_xx, M_tt_rpr_xy, M_tt_rpr_yy, M_ta_rpr_xz, M_ta_rpr_yz, M_aa_rpr_zz = [0.0] * 6
     for leg, k in legs[0]:
         (
         rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
@@ -2168,14 +2381,19 @@ def _run_M(m, X):
         # (M_aa) rotational block of M
         rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y
         ok = (
-        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
-            > _TOLERANCE * 0.62))
+        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
+            * 0.62)
         )
-        sums = m.added(sums, leg, (
-        rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t,
-        ))
-    M_tt_rpr_xx, M_tt_rpr_xy, M_tt_rpr_yy, M_ta_rpr_xz, M_ta_rpr_yz, M_aa_rpr_zz = sums
-    sums = [0.0] * 6
+        # (M_tt) translational block of M
+        M_tt_rpr_xx += rpr_Q_xx
+        M_tt_rpr_xy += rpr_Q_xy
+        M_tt_rpr_yy += rpr_Q_yy
+        # (M_ta) coupling block of M
+        M_ta_rpr_xz += rpr_M_ta_t
+        M_ta_rpr_yz += rpr_M_ta_t_2
+        # (M_aa) rotational block of M
+        M_aa_rpr_zz += rpr_M_aa_t
+    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz = [0.0] * 6
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
@@ -2266,14 +2484,19 @@ def _run_M(m, X):
         # (M_aa) rotational block of M
         rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
-        sums = m.added(sums, leg, (
-        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
-        ))
-    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz = sums
-    sums = [0.0] * 6
+        # (M_tt) translational block of M
+        M_tt_rrr_xx += rrr_Q_xx
+        M_tt_rrr_xy += rrr_Q_xy
+        M_tt_rrr_yy += rrr_Q_yy
+        # (M_ta) coupling block of M
+        M_ta_rrr_xz += rrr_M_ta_t
+        M_ta_rrr_yz += rrr_M_ta_t_2
+        # (M_aa) rotational block of M
+        M_aa_rrr_zz += rrr_M_aa_t
+    M_tt_prr_xx, M_tt_prr_xy, M_tt_prr_yy, M_ta_prr_xz, M_ta_prr_yz, M_aa_prr_zz = [0.0] * 6
     for leg, k in legs[2]:
         (
         inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
@@ -2342,13 +2565,16 @@ def _run_M(m, X):
         prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y
         # (M_aa) rotational block of M
         prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y
-        ok = (
-        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
-        )
-        sums = m.added(sums, leg, (
-        prr_Q_xx, prr_Q_xy, prr_Q_yy, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t,
-        ))
-    M_tt_prr_xx, M_tt_prr_xy, M_tt_prr_yy, M_ta_prr_xz, M_ta_prr_yz, M_aa_prr_zz = sums
+        ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
+        # (M_tt) translational block of M
+        M_tt_prr_xx += prr_Q_xx
+        M_tt_prr_xy += prr_Q_xy
+        M_tt_prr_yy += prr_Q_yy
+        # (M_ta) coupling block of M
+        M_ta_prr_xz += prr_M_ta_t
+        M_ta_prr_yz += prr_M_ta_t_2
+        # (M_aa) rotational block of M
+        M_aa_prr_zz += prr_M_aa_t
     # (M_tt) translational block of M
     M_tt_xx = M_tt_prr_xx + M_tt_rpr_xx + M_tt_rrr_xx + m_star
     M_tt_xy = M_tt_prr_xy + M_tt_rpr_xy + M_tt_rrr_xy
@@ -2407,7 +2633,7 @@ def _run_Z(m, X, V):
     Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
     Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
-    sums = [0.0] * 3
+    Z_t_rpr_x, Z_t_rpr_y, Z_a_rpr_z = [0.0] * 3
     for leg, k in legs[0]:
         (
         rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
@@ -2483,14 +2709,15 @@ def _run_Z(m, X, V):
         # (Z_a) rotational part of Z
         rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y
         ok = (
-        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
-            > _TOLERANCE * 0.62))
+        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
+            * 0.62)
         )
-        sums = m.added(sums, leg, (
-        rpr_U_x, rpr_U_y, rpr_Z_a_t,
-        ))
-    Z_t_rpr_x, Z_t_rpr_y, Z_a_rpr_z = sums
-    sums = [0.0] * 3
+        # (Z_t) translational part of Z
+        Z_t_rpr_x += rpr_U_x
+        Z_t_rpr_y += rpr_U_y
+        # (Z_a) rotational part of Z
+        Z_a_rpr_z += rpr_Z_a_t
+    Z_t_rrr_x, Z_t_rrr_y, Z_a_rrr_z = [0.0] * 3
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
@@ -2604,7 +2831,7 @@ def _run_Z(m, X, V):
         )
         # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
-        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
@@ -2621,14 +2848,15 @@ def _run_Z(m, X, V):
         # (Z_a) rotational part of Z
         rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
-        sums = m.added(sums, leg, (
-        rrr_U_x, rrr_U_y, rrr_Z_a_t,
-        ))
-    Z_t_rrr_x, Z_t_rrr_y, Z_a_rrr_z = sums
-    sums = [0.0] * 3
+        # (Z_t) translational part of Z
+        Z_t_rrr_x += rrr_U_x
+        Z_t_rrr_y += rrr_U_y
+        # (Z_a) rotational part of Z
+        Z_a_rrr_z += rrr_Z_a_t
+    Z_t_prr_x, Z_t_prr_y, Z_a_prr_z = [0.0] * 3
     for leg, k in legs[2]:
         (
         inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
@@ -2713,13 +2941,12 @@ def _run_Z(m, X, V):
         prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x - axis_x_prr_axes2_x*prr_c_o_in_axes2_y
         # (Z_a) rotational part of Z
         prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y
-        ok = (
-        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
-        )
-        sums = m.added(sums, leg, (
-        prr_U_x, prr_U_y, prr_Z_a_t,
-        ))
-    Z_t_prr_x, Z_t_prr_y, Z_a_prr_z = sums
+        ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
+        # (Z_t) translational part of Z
+        Z_t_prr_x += prr_U_x
+        Z_t_prr_y += prr_U_y
+        # (Z_a) rotational part of Z
+        Z_a_prr_z += prr_Z_a_t
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_prr_x + Z_t_rpr_x + Z_t_rrr_x
     Z_t_y = Z_p_y + Z_t_prr_y + Z_t_rpr_y + Z_t_rrr_y
@@ -2776,8 +3003,8 @@ def _run_H(m, X):
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
         rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x
         ok = (
-        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
-            > _TOLERANCE * 0.62))
+        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
+            * 0.62)
         )
         # (rpr-w_2) reciprocal vector 2
         out_H[_H_rpr[0][leg]] = rpr_w_2_x
@@ -2844,8 +3071,8 @@ def _run_H(m, X):
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-w_1) reciprocal vector 1
         out_H[_H_rrr[0][leg]] = rrr_w_1_x
@@ -2887,9 +3114,7 @@ def _run_H(m, X):
         prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
         # (prr-H_a_1) moment of the column's unit force about the platform origin
         prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x
-        ok = (
-        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
-        )
+        ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
         # (prr-w_1) reciprocal vector 1
         out_H[_H_prr[0][leg]] = prr_w_1_x
         out_H[_H_prr[1][leg]] = prr_w_1_y
@@ -2943,7 +3168,7 @@ def _run_required(m, X, V, A):
     f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
     # (mu_p) inertia moment of the platform less that of its weight
     mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
-    sums = [0.0] * 3
+    R_t_t, R_t_t_2, R_a_rpr_z = [0.0] * 3
     for leg, k in legs[0]:
         (
         rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
@@ -3023,19 +3248,20 @@ def _run_required(m, X, V, A):
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
         rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y
         ok = (
-        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
-            > _TOLERANCE * 0.62))
+        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
+            * 0.62)
         )
-        sums = m.added(sums, leg, (
-        rpr_c_x, rpr_c_y, rpr_R_a_t,
-        ))
+        # (R_t) force that actuators and external wrench must give
+        R_t_t += rpr_c_x
+        R_t_t_2 += rpr_c_y
+        # (R_a) moment that actuators and external wrench must give
+        R_a_rpr_z += rpr_R_a_t
         # (rpr-w_2) reciprocal vector 2
         out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
         out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
-    R_t_t, R_t_t_2, R_a_rpr_z = sums
-    sums = [0.0] * 3
+    R_t_t_3, R_t_t_4, R_a_rrr_z = [0.0] * 3
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
@@ -3154,7 +3380,7 @@ def _run_required(m, X, V, A):
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
         rrr_c_in_axes2_x = (
@@ -3172,19 +3398,20 @@ def _run_required(m, X, V, A):
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
-        sums = m.added(sums, leg, (
-        rrr_c_x, rrr_c_y, rrr_R_a_t,
-        ))
+        # (R_t) force that actuators and external wrench must give
+        R_t_t_3 += rrr_c_x
+        R_t_t_4 += rrr_c_y
+        # (R_a) moment that actuators and external wrench must give
+        R_a_rrr_z += rrr_R_a_t
         # (rrr-w_1) reciprocal vector 1
         out_H[_H_rrr[0][leg]] = rrr_w_1_x
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
-    R_t_t_3, R_t_t_4, R_a_rrr_z = sums
-    sums = [0.0] * 3
+    R_t_t_5, R_t_t_6, R_a_prr_z = [0.0] * 3
     for leg, k in legs[2]:
         (
         inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
@@ -3279,18 +3506,17 @@ def _run_required(m, X, V, A):
         prr_R_a_t = prr_c_x*prr_q_y - prr_c_y*prr_q_x
         # (prr-H_a_1) moment of the column's unit force about the platform origin
         prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x
-        ok = (
-        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
-        )
-        sums = m.added(sums, leg, (
-        prr_c_x, prr_c_y, prr_R_a_t,
-        ))
+        ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
+        # (R_t) force that actuators and external wrench must give
+        R_t_t_5 += prr_c_x
+        R_t_t_6 += prr_c_y
+        # (R_a) moment that actuators and external wrench must give
+        R_a_prr_z += prr_R_a_t
         # (prr-w_1) reciprocal vector 1
         out_H[_H_prr[0][leg]] = prr_w_1_x
         out_H[_H_prr[1][leg]] = prr_w_1_y
         # (prr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prr[2][leg]] = prr_H_a_1_z
-    R_t_t_5, R_t_t_6, R_a_prr_z = sums
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t - R_t_t_3 - R_t_t_5
     R_t_y = f_p_y - R_t_t_2 - R_t_t_4 - R_t_t_6
@@ -3342,8 +3568,8 @@ def _run_inverse_kinematics(m, X):
         inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_q_1 = atan2(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1)
         ok = (
-        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
-            > _TOLERANCE * 0.62))
+        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
+            * 0.62)
         )
         # (rpr-q_1) displacement of joint 1
         out_q[_q_rpr[0][leg]] = rpr_q_1
@@ -3389,10 +3615,7 @@ def _run_inverse_kinematics(m, X):
         atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
             inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
         )
-        ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0))
-        )
+        ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
         # (rrr-q_2) displacement of joint 2
@@ -3418,7 +3641,7 @@ def _run_inverse_kinematics(m, X):
         atan2(inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy), inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t)
         )
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0))
+        ok = ok & (prr_disc_1 >= 0.0)
         # (prr-q_1) displacement of joint 1
         out_q[_q_prr[0][leg]] = prr_q_1
         # (prr-q_2) displacement of joint 2
@@ -3480,8 +3703,8 @@ def _run_joint_rates(m, X, V):
         inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
         )
         ok = (
-        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
-            > _TOLERANCE * 0.62))
+        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
+            * 0.62)
         )
         # (rpr-qd_1) rate of joint 1
         out_qd[_qd_rpr[0][leg]] = rpr_qd_1
@@ -3551,8 +3774,8 @@ def _run_joint_rates(m, X, V):
             rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-qd_1) rate of joint 1
         out_qd[_qd_rrr[0][leg]] = rrr_qd_1
@@ -3590,9 +3813,7 @@ def _run_joint_rates(m, X, V):
             inv_prr_size_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_1_t*(prr_S_x*prr_base_frame_xy
             + prr_S_y*prr_base_frame_yy)
         )
-        ok = (
-        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
-        )
+        ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
         # (prr-qd_1) rate of joint 1
         out_qd[_qd_prr[0][leg]] = prr_qd_1
         # (prr-qd_2) rate of joint 2
@@ -3680,8 +3901,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
         ok = (
-        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
-            > _TOLERANCE * 0.62))
+        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
+            * 0.62)
         )
         # (rpr-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rpr[0][leg]] = rpr_qdd_1
@@ -3781,8 +4002,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrr-qdd_2) acceleration of joint 2
         rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1_t
@@ -3841,9 +4062,7 @@ def _run_joint_accelerations(m, X, V, A):
         prr_c_2*prr_rel_in_axes2_x - prr_S_ddot_in_axes2_y*prr_s_2 -
             prr_platform_joint_offset_x*prr_qdd_1_t*prr_s_2
         )
-        ok = (
-        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
-        )
+        ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
         # (prr-qdd_1) acceleration of joint 1
         out_qdd[_qdd_prr[0][leg]] = prr_qdd_1
         # (prr-qdd_2) acceleration of joint 2
@@ -3882,7 +4101,7 @@ def _run_legs(m, X, V, A):
     alpha_z = A_2
     ok = True
     out_leg_force = m.zeros("leg_force")
-    out_drive = m.zeros("drive")
+    out_actuator = m.zeros("actuator")
     for leg, k in legs[0]:
         (
         rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
@@ -3965,15 +4184,15 @@ def _run_legs(m, X, V, A):
         axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y + axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x
         )
         ok = (
-        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
-            > _TOLERANCE * 0.62))
+        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
+            * 0.62)
         )
         # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rpr[0][leg]] = rpr_c_true_x
         out_leg_force[_leg_force_rpr[1][leg]] = rpr_c_true_y
         # (rpr-w_2) reciprocal vector 2
-        out_drive[_drive_rpr[0][leg]] = axis_x_rpr_axes1_x
-        out_drive[_drive_rpr[1][leg]] = axis_x_rpr_axes1_y
+        out_actuator[_actuator_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_actuator[_actuator_rpr[1][leg]] = axis_x_rpr_axes1_y
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
@@ -4092,7 +4311,7 @@ def _run_legs(m, X, V, A):
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
         rrr_c_in_axes2_x = (
@@ -4113,15 +4332,15 @@ def _run_legs(m, X, V, A):
         axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x
         )
         ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_x
         out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_y
         # (rrr-w_1) reciprocal vector 1
-        out_drive[_drive_rrr[0][leg]] = rrr_w_1_x
-        out_drive[_drive_rrr[1][leg]] = rrr_w_1_y
+        out_actuator[_actuator_rrr[0][leg]] = rrr_w_1_x
+        out_actuator[_actuator_rrr[1][leg]] = rrr_w_1_y
     for leg, k in legs[2]:
         (
         inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
@@ -4219,16 +4438,14 @@ def _run_legs(m, X, V, A):
         prr_c_true_y = (
         axis_x_prr_axes2_x*prr_c_true_in_axes2_y - axis_y_prr_axes2_x*prr_c_true_in_axes2_x
         )
-        ok = (
-        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
-        )
+        ok = ok & (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
         # (prr-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_prr[0][leg]] = prr_c_true_x
         out_leg_force[_leg_force_prr[1][leg]] = prr_c_true_y
         # (prr-w_1) reciprocal vector 1
-        out_drive[_drive_prr[0][leg]] = prr_w_1_x
-        out_drive[_drive_prr[1][leg]] = prr_w_1_y
-    return ok, (out_leg_force, out_drive,)
+        out_actuator[_actuator_prr[0][leg]] = prr_w_1_x
+        out_actuator[_actuator_prr[1][leg]] = prr_w_1_y
+    return ok, (out_leg_force, out_actuator,)
 
 
 # potential: 103 mul, 76 add, 2 div, 3 sqrt, 0 trig
@@ -4253,7 +4470,7 @@ def _run_potential(m, X):
     gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
         gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
     )
-    sums = [0.0] * 1
+    potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
         rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
@@ -4286,14 +4503,12 @@ def _run_potential(m, X):
             + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
         )
         ok = (
-        ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
-            > _TOLERANCE * 0.62))
+        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
+            * 0.62)
         )
-        sums = m.added(sums, leg, (
-        rpr_potential_t_3,
-        ))
-    potential_t_2, = sums
-    sums = [0.0] * 1
+        # (potential) potential energy
+        potential_t_2 += rpr_potential_t_3
+    potential_t_3, = [0.0] * 1
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
@@ -4345,15 +4560,10 @@ def _run_potential(m, X):
             rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
             rrr_potential_t*rrr_s_1))
         )
-        ok = (
-        ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0))
-        )
-        sums = m.added(sums, leg, (
-        rrr_potential_t_3,
-        ))
-    potential_t_3, = sums
-    sums = [0.0] * 1
+        ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
+        # (potential) potential energy
+        potential_t_3 += rrr_potential_t_3
+    potential_prr, = [0.0] * 1
     for leg, k in legs[2]:
         (
         inv_prr_size_t, prr_b_in_axes0_x, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
@@ -4386,11 +4596,9 @@ def _run_potential(m, X):
             prr_g_in_axes0_y*(prr_h_1_in_spec0_y + prr_potential_t + prr_c_2*prr_h_2_in_spec2_y +
             prr_h_2_in_spec2_x*prr_s_2)
         )
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0))
-        sums = m.added(sums, leg, (
-        -prr_potential_t_2,
-        ))
-    potential_prr, = sums
+        ok = ok & (prr_disc_1 >= 0.0)
+        # (potential) potential energy
+        potential_prr += -prr_potential_t_2
     # (potential) potential energy
     potential = potential_prr - potential_t - potential_t_2 - potential_t_3
     # (potential) potential energy
@@ -4423,7 +4631,7 @@ def _run_condition(m, X):
     out_reach = m.zeros("reach")
     # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
-    sums = [0.0] * 1
+    spread_rpr, = [0.0] * 1
     for leg, k in legs[0]:
         (
         rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -4448,7 +4656,7 @@ def _run_condition(m, X):
         # (rpr-w_2) reciprocal vector 2
         rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
         rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
-        # (rpr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rpr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rpr_pivot_size = abs(rpr_rho2_1)
         rpr_pivot_size_2 = abs(rpr_root_1)
         rpr_least_pivots = (
@@ -4461,21 +4669,19 @@ def _run_condition(m, X):
         rpr_spread_t_2 = b_c_in_platform_y - rpr_platform_point_y
         rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2
         clear = (
-        clear & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
-            (abs(rpr_root_1) > _TOLERANCE * 0.62))
+        clear & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) >
+            _TOLERANCE * 0.62)
         )
-        sums = m.added(sums, leg, (
-        rpr_spread_t_3,
-        ))
+        # (spread) rms distance of the platform points from their centroid
+        spread_rpr += rpr_spread_t_3
         # (rpr-w_2) reciprocal vector 2
         out_H[_H_rpr[0][leg]] = rpr_w_2_x
         out_H[_H_rpr[1][leg]] = rpr_w_2_y
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
-        # (rpr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rpr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rpr[0][leg]] = rpr_least_pivots
-    spread_rpr, = sums
-    sums = [0.0] * 1
+    spread_rrr, = [0.0] * 1
     for leg, k in legs[1]:
         (
         inv_rrr_rho2_1_t, inv_rrr_size, inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t,
@@ -4534,7 +4740,7 @@ def _run_condition(m, X):
         rrr_w_1_y = (
         -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
         )
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
         rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
         rrr_least_pivots = (
@@ -4547,23 +4753,21 @@ def _run_condition(m, X):
         rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y
         rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2
         clear = (
-        clear & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
-            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
+        clear & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
-        reached = reached & m.every(leg, (rrr_disc_1 >= 0.0))
-        sums = m.added(sums, leg, (
-        rrr_spread_t_3,
-        ))
+        reached = reached & (rrr_disc_1 >= 0.0)
+        # (spread) rms distance of the platform points from their centroid
+        spread_rrr += rrr_spread_t_3
         # (rrr-w_1) reciprocal vector 1
         out_H[_H_rrr[0][leg]] = rrr_w_1_x
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots
         out_reach[_reach_rrr[0][leg]] = rrr_disc_1
-    spread_rrr, = sums
-    sums = [0.0] * 1
+    spread_prr, = [0.0] * 1
     for leg, k in legs[2]:
         (
         inv_prr_size, inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
@@ -4597,7 +4801,7 @@ def _run_condition(m, X):
         prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2
         prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
         prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
-        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (prr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prr_pivot_size = abs(prr_v_2_in_axes0_y)
         prr_pivot = inv_prr_size*prr_pivot_size
         # (prr-H_a_1) moment of the column's unit force about the platform origin
@@ -4606,20 +4810,18 @@ def _run_condition(m, X):
         prr_spread_t = b_c_in_platform_x - prr_platform_point_x
         prr_spread_t_2 = b_c_in_platform_y - prr_platform_point_y
         prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2
-        reached = reached & m.every(leg, (prr_disc_1 >= 0.0))
-        clear = clear & m.every(leg, (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
-        sums = m.added(sums, leg, (
-        prr_spread_t_3,
-        ))
+        reached = reached & (prr_disc_1 >= 0.0)
+        clear = clear & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size)
+        # (spread) rms distance of the platform points from their centroid
+        spread_prr += prr_spread_t_3
         # (prr-w_1) reciprocal vector 1
         out_H[_H_prr[0][leg]] = prr_w_1_x
         out_H[_H_prr[1][leg]] = prr_w_1_y
         # (prr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prr[2][leg]] = prr_H_a_1_z
-        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (prr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_prr[0][leg]] = prr_pivot
         out_reach[_reach_prr[0][leg]] = prr_disc_1
-    spread_prr, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = (
     sqrt(0.3333333333333333*spread_prr + 0.3333333333333333*spread_rpr +
@@ -4672,18 +4874,18 @@ def _steps_dynamics(m, X, V):
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    tau = _solve(H, subtract_2)
+    subtract_1 = required - extend_1
+    tau = _solve(H, subtract_1)
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H, tau)
-    extend_2 = wrench
-    add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z
-    A = _solve(M, subtract_4)
+    extend_1 = wrench
+    add_1 = times_1 + extend_1
+    subtract_1 = add_1 - Z
+    A = _solve(M, subtract_1)
     return (A,)
 
 
@@ -4695,10 +4897,10 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    solve_3 = _solve(H, subtract_2)
-    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    forces = _with_forces(leg_force, solve_3, drive, [0, 1, 2])
+    subtract_1 = required - extend_1
+    solve_1 = _solve(H, subtract_1)
+    leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
+    forces = _with_forces(leg_force, solve_1, actuator, [0, 1, 2])
     return (forces,)
 
 
@@ -4719,16 +4921,16 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths, length)
-    divide_rows_2 = _rows_divided(H, choose_length_1, [2])
-    sigma = _singular_values(divide_rows_2)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [2])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q[[1, 2, 4]]
-    subtract_2 = q_actuated - take_1
-    gap = _wrapped(subtract_2, [1])
+    subtract_1 = q_actuated - take_1
+    gap = _wrapped(subtract_1, [1])
     return (gap,)
 
 
@@ -4800,8 +5002,8 @@ def _steps_rotation(m, X):
 
 def _steps_pose(m, t, R):
     angle_of_rotation_1 = _angle_of_rotation(R)
-    join_2 = np.concatenate((t, angle_of_rotation_1))
-    X = join_2
+    join_1 = np.concatenate((t, angle_of_rotation_1))
+    X = join_1
     return (X,)
 
 
@@ -4823,9 +5025,9 @@ def _steps_difference(m, X0, X1):
 
 def _steps_interpolate(m, X0, X1, s):
     subtract_1 = X1 - X0
-    wrap_turns_2 = _wrapped(subtract_1, [2])
-    scale_3 = wrap_turns_2 * s
-    X = X0 + scale_3
+    wrap_turns_1 = _wrapped(subtract_1, [2])
+    scale_1 = wrap_turns_1 * s
+    X = X0 + scale_1
     return (X,)
 
 

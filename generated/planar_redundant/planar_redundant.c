@@ -54,6 +54,19 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+#define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
+
+/* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
+#define NQ ((size_t)PLANAR_REDUNDANT_NQ)
+#define NV ((size_t)PLANAR_REDUNDANT_NV)
+#define NU ((size_t)PLANAR_REDUNDANT_NU)
+#define NC ((size_t)PLANAR_REDUNDANT_NC)
+#define NW ((size_t)PLANAR_REDUNDANT_NW)
+#define NJ ((size_t)PLANAR_REDUNDANT_NJ)
+#define NL ((size_t)3)
+#define LEGS_OF_prrr ((size_t)1)
+#define LEGS_OF_rrr ((size_t)2)
+
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
@@ -114,6 +127,12 @@ INLINE void clear(real *x, size_t n)
     for (size_t i = 0; i < n; ++i) {
         x[i] = 0;
     }
+}
+
+/* What a leg adds to a sum, or gives alone. */
+INLINE void gather(real *sum, int add, real term)
+{
+    *sum = add ? *sum + term : term;
 }
 
 INLINE int is_finite(real x)
@@ -478,62 +497,62 @@ static int acceptable(const planar_redundant_params *p)
     ok &= all_zero(&p->platform_centre_of_mass[0] + 2, 1, 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_planar_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->prrr_base_point[0][0], 3);
-    ok &= all_zero(&p->prrr_base_point[0][0] + 2, 1, 3);
-    ok &= all_within(&p->prrr_base_frame[0][0][0], 9);
-    ok &= all_rotations(&p->prrr_base_frame[0][0][0], 1);
-    ok &= all_about_z(&p->prrr_base_frame[0][0][0], 1);
-    ok &= all_within(&p->prrr_platform_point[0][0], 3);
-    ok &= all_zero(&p->prrr_platform_point[0][0] + 2, 1, 3);
-    ok &= all_within(&p->prrr_joint3_offset[0][0], 3);
-    ok &= all_zero(&p->prrr_joint3_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->prrr_joint3_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->prrr_platform_joint_offset[0][0], 3);
-    ok &= all_zero(&p->prrr_platform_joint_offset[0][0] + 1, 1, 3);
-    ok &= all_zero(&p->prrr_platform_joint_offset[0][0] + 2, 1, 3);
-    ok &= all_within(&p->prrr_link1_mass[0], 1);
-    ok &= none_negative(&p->prrr_link1_mass[0], 1);
-    ok &= all_within(&p->prrr_link1_centre_of_mass[0][0], 3);
-    ok &= all_zero(&p->prrr_link1_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_within(&p->prrr_link1_inertia[0][0][0], 9);
-    ok &= all_planar_inertias(&p->prrr_link1_inertia[0][0][0], 1);
-    ok &= all_within(&p->prrr_link2_mass[0], 1);
-    ok &= none_negative(&p->prrr_link2_mass[0], 1);
-    ok &= all_within(&p->prrr_link2_centre_of_mass[0][0], 3);
-    ok &= all_zero(&p->prrr_link2_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_within(&p->prrr_link2_inertia[0][0][0], 9);
-    ok &= all_planar_inertias(&p->prrr_link2_inertia[0][0][0], 1);
-    ok &= all_within(&p->prrr_link3_mass[0], 1);
-    ok &= none_negative(&p->prrr_link3_mass[0], 1);
-    ok &= all_within(&p->prrr_link3_centre_of_mass[0][0], 3);
-    ok &= all_zero(&p->prrr_link3_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_within(&p->prrr_link3_inertia[0][0][0], 9);
-    ok &= all_planar_inertias(&p->prrr_link3_inertia[0][0][0], 1);
-    ok &= all_within(&p->rrr_base_point[0][0], 6);
-    ok &= all_zero(&p->rrr_base_point[0][0] + 2, 2, 3);
-    ok &= all_within(&p->rrr_base_frame[0][0][0], 18);
-    ok &= all_rotations(&p->rrr_base_frame[0][0][0], 2);
-    ok &= all_about_z(&p->rrr_base_frame[0][0][0], 2);
-    ok &= all_within(&p->rrr_platform_point[0][0], 6);
-    ok &= all_zero(&p->rrr_platform_point[0][0] + 2, 2, 3);
-    ok &= all_within(&p->rrr_joint2_offset[0][0], 6);
-    ok &= all_zero(&p->rrr_joint2_offset[0][0] + 1, 2, 3);
-    ok &= all_zero(&p->rrr_joint2_offset[0][0] + 2, 2, 3);
-    ok &= all_within(&p->rrr_platform_joint_offset[0][0], 6);
-    ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 1, 2, 3);
-    ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 2, 2, 3);
-    ok &= all_within(&p->rrr_link1_mass[0], 2);
-    ok &= none_negative(&p->rrr_link1_mass[0], 2);
-    ok &= all_within(&p->rrr_link1_centre_of_mass[0][0], 6);
-    ok &= all_zero(&p->rrr_link1_centre_of_mass[0][0] + 2, 2, 3);
-    ok &= all_within(&p->rrr_link1_inertia[0][0][0], 18);
-    ok &= all_planar_inertias(&p->rrr_link1_inertia[0][0][0], 2);
-    ok &= all_within(&p->rrr_link2_mass[0], 2);
-    ok &= none_negative(&p->rrr_link2_mass[0], 2);
-    ok &= all_within(&p->rrr_link2_centre_of_mass[0][0], 6);
-    ok &= all_zero(&p->rrr_link2_centre_of_mass[0][0] + 2, 2, 3);
-    ok &= all_within(&p->rrr_link2_inertia[0][0][0], 18);
-    ok &= all_planar_inertias(&p->rrr_link2_inertia[0][0][0], 2);
+    ok &= all_within(&p->prrr_base_point[0][0], 3*LEGS_OF_prrr);
+    ok &= all_zero(&p->prrr_base_point[0][0] + 2, LEGS_OF_prrr, 3);
+    ok &= all_within(&p->prrr_base_frame[0][0][0], 9*LEGS_OF_prrr);
+    ok &= all_rotations(&p->prrr_base_frame[0][0][0], LEGS_OF_prrr);
+    ok &= all_about_z(&p->prrr_base_frame[0][0][0], LEGS_OF_prrr);
+    ok &= all_within(&p->prrr_platform_point[0][0], 3*LEGS_OF_prrr);
+    ok &= all_zero(&p->prrr_platform_point[0][0] + 2, LEGS_OF_prrr, 3);
+    ok &= all_within(&p->prrr_joint3_offset[0][0], 3*LEGS_OF_prrr);
+    ok &= all_zero(&p->prrr_joint3_offset[0][0] + 1, LEGS_OF_prrr, 3);
+    ok &= all_zero(&p->prrr_joint3_offset[0][0] + 2, LEGS_OF_prrr, 3);
+    ok &= all_within(&p->prrr_platform_joint_offset[0][0], 3*LEGS_OF_prrr);
+    ok &= all_zero(&p->prrr_platform_joint_offset[0][0] + 1, LEGS_OF_prrr, 3);
+    ok &= all_zero(&p->prrr_platform_joint_offset[0][0] + 2, LEGS_OF_prrr, 3);
+    ok &= all_within(&p->prrr_link1_mass[0], LEGS_OF_prrr);
+    ok &= none_negative(&p->prrr_link1_mass[0], LEGS_OF_prrr);
+    ok &= all_within(&p->prrr_link1_centre_of_mass[0][0], 3*LEGS_OF_prrr);
+    ok &= all_zero(&p->prrr_link1_centre_of_mass[0][0] + 2, LEGS_OF_prrr, 3);
+    ok &= all_within(&p->prrr_link1_inertia[0][0][0], 9*LEGS_OF_prrr);
+    ok &= all_planar_inertias(&p->prrr_link1_inertia[0][0][0], LEGS_OF_prrr);
+    ok &= all_within(&p->prrr_link2_mass[0], LEGS_OF_prrr);
+    ok &= none_negative(&p->prrr_link2_mass[0], LEGS_OF_prrr);
+    ok &= all_within(&p->prrr_link2_centre_of_mass[0][0], 3*LEGS_OF_prrr);
+    ok &= all_zero(&p->prrr_link2_centre_of_mass[0][0] + 2, LEGS_OF_prrr, 3);
+    ok &= all_within(&p->prrr_link2_inertia[0][0][0], 9*LEGS_OF_prrr);
+    ok &= all_planar_inertias(&p->prrr_link2_inertia[0][0][0], LEGS_OF_prrr);
+    ok &= all_within(&p->prrr_link3_mass[0], LEGS_OF_prrr);
+    ok &= none_negative(&p->prrr_link3_mass[0], LEGS_OF_prrr);
+    ok &= all_within(&p->prrr_link3_centre_of_mass[0][0], 3*LEGS_OF_prrr);
+    ok &= all_zero(&p->prrr_link3_centre_of_mass[0][0] + 2, LEGS_OF_prrr, 3);
+    ok &= all_within(&p->prrr_link3_inertia[0][0][0], 9*LEGS_OF_prrr);
+    ok &= all_planar_inertias(&p->prrr_link3_inertia[0][0][0], LEGS_OF_prrr);
+    ok &= all_within(&p->rrr_base_point[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_base_point[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_base_frame[0][0][0], 9*LEGS_OF_rrr);
+    ok &= all_rotations(&p->rrr_base_frame[0][0][0], LEGS_OF_rrr);
+    ok &= all_about_z(&p->rrr_base_frame[0][0][0], LEGS_OF_rrr);
+    ok &= all_within(&p->rrr_platform_point[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_platform_point[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_joint2_offset[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_joint2_offset[0][0] + 1, LEGS_OF_rrr, 3);
+    ok &= all_zero(&p->rrr_joint2_offset[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_platform_joint_offset[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 1, LEGS_OF_rrr, 3);
+    ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_link1_mass[0], LEGS_OF_rrr);
+    ok &= none_negative(&p->rrr_link1_mass[0], LEGS_OF_rrr);
+    ok &= all_within(&p->rrr_link1_centre_of_mass[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_link1_centre_of_mass[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_link1_inertia[0][0][0], 9*LEGS_OF_rrr);
+    ok &= all_planar_inertias(&p->rrr_link1_inertia[0][0][0], LEGS_OF_rrr);
+    ok &= all_within(&p->rrr_link2_mass[0], LEGS_OF_rrr);
+    ok &= none_negative(&p->rrr_link2_mass[0], LEGS_OF_rrr);
+    ok &= all_within(&p->rrr_link2_centre_of_mass[0][0], 3*LEGS_OF_rrr);
+    ok &= all_zero(&p->rrr_link2_centre_of_mass[0][0] + 2, LEGS_OF_rrr, 3);
+    ok &= all_within(&p->rrr_link2_inertia[0][0][0], 9*LEGS_OF_rrr);
+    ok &= all_planar_inertias(&p->rrr_link2_inertia[0][0][0], LEGS_OF_rrr);
     return ok;
 }
 
@@ -543,19 +562,14 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real m_star_prrr = 0;
-    real h_star_prrr_in_platform_x = 0;
-    real h_star_prrr_in_platform_y = 0;
-    real J_star_prrr_in_platform_xx = 0;
-    real J_star_prrr_in_platform_zz = 0;
+    real m_star_of_legs = 0;
+    real h_star_in_platform_x_of_legs = 0;
+    real h_star_in_platform_y_of_legs = 0;
+    real J_star_in_platform_xx_of_legs = 0;
+    real J_star_t_5_of_legs = 0;
     real b_c_prrr_in_platform_x = 0;
     real b_c_prrr_in_platform_y = 0;
     real legs_size_prrr = 0;
-    real m_star_rrr = 0;
-    real h_star_rrr_in_platform_x = 0;
-    real h_star_rrr_in_platform_y = 0;
-    real J_star_rrr_in_platform_xx = 0;
-    real J_star_rrr_in_platform_zz = 0;
     real b_c_rrr_in_platform_x = 0;
     real b_c_rrr_in_platform_y = 0;
     real legs_size_rrr = 0;
@@ -575,7 +589,7 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
     const real J_star_t_4 = J_star_t_2*platform_mass;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         const size_t own = leg;
         const real prrr_base_point_x = params->prrr_base_point[own][0];
         const real prrr_base_point_y = params->prrr_base_point[own][1];
@@ -658,11 +672,11 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real prrr_d_Gamma_3_t = prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y;
         const real prrr_d_Gamma_3_in_axes3_y = prrr_d_Gamma_3_t + prrr_h_3_in_spec3_x;
         /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real inv_prrr_rho2_2_t = 1/prrr_rho2_2_t;
         const real inv_prrr_size = 1/prrr_size;
         /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real prrr_d_G_in_axes3_yy = prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_y;
         /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
@@ -727,16 +741,16 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         model->prrr_rho2_2_t[leg] = prrr_rho2_2_t;
         model->prrr_size[leg] = prrr_size;
         model->prrr_w_3_in_axes3_y[leg] = prrr_w_3_in_axes3_y;
-        m_star_prrr += prrr_link3_mass;
-        h_star_prrr_in_platform_x += prrr_h_star_t;
-        h_star_prrr_in_platform_y += prrr_h_star_t_2;
-        J_star_prrr_in_platform_xx += prrr_J_star_t_3;
-        J_star_prrr_in_platform_zz += prrr_J_star_t_4;
+        m_star_of_legs += prrr_link3_mass;
+        h_star_in_platform_x_of_legs += prrr_h_star_t;
+        h_star_in_platform_y_of_legs += prrr_h_star_t_2;
+        J_star_in_platform_xx_of_legs += prrr_J_star_t_3;
+        J_star_t_5_of_legs += prrr_J_star_t_4;
         b_c_prrr_in_platform_x += prrr_platform_point_x;
         b_c_prrr_in_platform_y += prrr_platform_point_y;
         legs_size_prrr += prrr_size_t_3;
     }
-    for (size_t leg = 0; leg < 2; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         const size_t own = leg;
         const real rrr_base_point_x = params->rrr_base_point[own][0];
         const real rrr_base_point_y = params->rrr_base_point[own][1];
@@ -806,7 +820,7 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
         const real rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real inv_rrr_rho2_1_t = 1/rrr_rho2_1_t;
         const real inv_rrr_size = 1/rrr_size;
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
@@ -863,27 +877,24 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
         model->rrr_size[leg] = rrr_size;
         model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
-        m_star_rrr += rrr_link2_mass;
-        h_star_rrr_in_platform_x += rrr_h_star_t;
-        h_star_rrr_in_platform_y += rrr_h_star_t_2;
-        J_star_rrr_in_platform_xx += rrr_J_star_t_3;
-        J_star_rrr_in_platform_zz += rrr_J_star_t_4;
+        m_star_of_legs += rrr_link2_mass;
+        h_star_in_platform_x_of_legs += rrr_h_star_t;
+        h_star_in_platform_y_of_legs += rrr_h_star_t_2;
+        J_star_in_platform_xx_of_legs += rrr_J_star_t_3;
+        J_star_t_5_of_legs += rrr_J_star_t_4;
         b_c_rrr_in_platform_x += rrr_platform_point_x;
         b_c_rrr_in_platform_y += rrr_platform_point_y;
         legs_size_rrr += rrr_size_t_3;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_prrr + m_star_rrr + platform_mass;
+    const real m_star = m_star_of_legs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = h_star_prrr_in_platform_x + h_star_rrr_in_platform_x +
-        h_star_t;
-    const real h_star_in_platform_y = h_star_prrr_in_platform_y + h_star_rrr_in_platform_y +
-        h_star_t_2;
+    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
+    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xx = J_star_prrr_in_platform_xx + J_star_rrr_in_platform_xx
-        + J_star_t_3;
-    const real J_star_t_5 = J_star_in_platform_xx - J_star_prrr_in_platform_zz -
-        J_star_rrr_in_platform_zz - J_star_t_4 - platform_inertia_zz;
+    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + J_star_t_3;
+    const real J_star_t_5 = J_star_in_platform_xx - J_star_t_4 - J_star_t_5_of_legs -
+        platform_inertia_zz;
     const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
@@ -976,9 +987,10 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
 }
 
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
+#define PADDED(n) (((n) + 4)/4*4)
 INLINE size_t stride_of(size_t n, size_t w)
 {
-    return w == 1 ? (n + 4)/4*4 : n + 1;
+    return w == 1 ? PADDED(n) : n + 1;
 }
 
 INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
@@ -1327,14 +1339,14 @@ INLINE void rotation_of_angle(const real *a, real *x)
 /* X moved by a part of a small step. */
 static void moved(const real *X, const real *step, real part, real *to)
 {
-    for (size_t i = 0; i < 4; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         to[i] = X[i] + part*step[i];
     }
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 431 mul, 297 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -1409,7 +1421,7 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
             - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
@@ -1477,7 +1489,7 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         const real prrr_w_3_in_axes3_x =
             inv_prrr_r_2_in_axes3_y*prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_yd_1 = V[3*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
         /* (prrr-qd_2) rate of joint 2 */
@@ -1581,17 +1593,17 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         const real prrr_P_c_1_in_axes0_x = m->prrr_P_c_1_in_axes0_x[i];
         const real prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x + prrr_P_c_2_in_axes0_x*prrr_w_2_t;
         /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y;
         /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real prrr_d_G_in_axes3_xx = prrr_d_Gamma_3_in_axes3_x*prrr_w_3_in_axes3_x -
             inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_2_in_axes3_x;
         const real prrr_d_Gamma_3_in_axes3_y = m->prrr_d_Gamma_3_in_axes3_y[i];
         const real prrr_d_G_in_axes3_xy = prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_x -
             inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_3_in_axes3_y;
         /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y;
         const real prrr_G_o_in_axes3_x =
             inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x -
@@ -1624,13 +1636,13 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         const real prrr_U_y = axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
             axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
         /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 1 */
+           extra degree of freedom of joint 1 */
         const real prrr_dy_1_P_1_t = prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y +
             inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
             - prrr_dy_1_Gamma_2);
         const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t;
         /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 1 */
+           degree of freedom of joint 1 */
         const real prrr_d_G_in_axes3_yy = m->prrr_d_G_in_axes3_yy[i];
         const real prrr_d_P_1_in_axes3_y = -prrr_d_G_in_axes3_xy*prrr_e_1_in_axes3_x -
             prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y;
@@ -1642,7 +1654,7 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         const real prrr_d_P_1_y = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
             axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
         /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 1 */
+           extra degree of freedom of joint 1 */
         const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_e_1_in_axes3_x +
             prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y;
         const real prrr_P_1_o = prrr_T_1_o_in_axes0_x - prrr_P_1_o_t;
@@ -1658,24 +1670,24 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
         const real prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + prrr_Q_xx : prrr_Q_xx;  /* M_tt_prrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prrr_Q_xy : prrr_Q_xy;  /* M_tt_prrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prrr_Q_yy : prrr_Q_yy;  /* M_tt_prrr_yy */
+        gather(&terms[0*count + k], add, prrr_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, prrr_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, prrr_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        terms[3*count + k] = add ? terms[3*count + k] + prrr_M_ta_t : prrr_M_ta_t;  /* M_ta_prrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + prrr_M_ta_t_2 : prrr_M_ta_t_2;  /* M_ta_prrr_yz */
+        gather(&terms[3*count + k], add, prrr_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, prrr_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        terms[5*count + k] = add ? terms[5*count + k] + prrr_M_aa_t : prrr_M_aa_t;  /* M_aa_prrr_zz */
+        gather(&terms[5*count + k], add, prrr_M_aa_t);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[6*count + k] = add ? terms[6*count + k] + prrr_U_x : prrr_U_x;  /* Z_t_prrr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + prrr_U_y : prrr_U_y;  /* Z_t_prrr_y */
+        gather(&terms[6*count + k], add, prrr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[7*count + k], add, prrr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[8*count + k] = add ? terms[8*count + k] + prrr_Z_a_t : prrr_Z_a_t;  /* Z_a_prrr_z */
+        gather(&terms[8*count + k], add, prrr_Z_a_t);  /* Z_a_z_of_legs */
         /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 1 */
+           extra degree of freedom of joint 1 */
         o[0*count + k] = prrr_P_1_o;
         /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 1 */
+           degree of freedom of joint 1 */
         o[1*count + k] = prrr_d_P_1_x;
         o[2*count + k] = prrr_d_P_1_x;
         o[3*count + k] = prrr_d_P_1_y;
@@ -1684,7 +1696,7 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         o[5*count + k] = prrr_M_ya_1_z;
         o[6*count + k] = prrr_M_ya_1_z;
         /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 1 */
+           extra degree of freedom of joint 1 */
         o[7*count + k] = prrr_dy_1_P_1;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[8*count + k] = 1;
@@ -1709,19 +1721,19 @@ INLINE void dynamics_place_prrr(size_t w, size_t count, const real *o, size_t fi
     *Z, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Z[(3)*w + k] = o[0*count + first + k];
-        M[(12)*w + k] = o[1*count + first + k];
-        M[(3)*w + k] = o[2*count + first + k];
-        M[(13)*w + k] = o[3*count + first + k];
-        M[(7)*w + k] = o[4*count + first + k];
-        M[(14)*w + k] = o[5*count + first + k];
-        M[(11)*w + k] = o[6*count + first + k];
-        M[(15)*w + k] = o[7*count + first + k];
-        H[(12)*w + k] = o[8*count + first + k];
-        H[(1)*w + k] = o[9*count + first + k];
-        H[(5)*w + k] = o[10*count + first + k];
-        H[(9)*w + k] = o[11*count + first + k];
-        H[(13)*w + k] = o[12*count + first + k];
+        Z[3*w + k] = o[0*count + first + k];
+        M[3*NV*w + k] = o[1*count + first + k];
+        M[(0*NV + 3)*w + k] = o[2*count + first + k];
+        M[(3*NV + 1)*w + k] = o[3*count + first + k];
+        M[(NV + 3)*w + k] = o[4*count + first + k];
+        M[(3*NV + 2)*w + k] = o[5*count + first + k];
+        M[(2*NV + 3)*w + k] = o[6*count + first + k];
+        M[(3*NV + 3)*w + k] = o[7*count + first + k];
+        H[3*NU*w + k] = o[8*count + first + k];
+        H[(0*NU + 1)*w + k] = o[9*count + first + k];
+        H[(NU + 1)*w + k] = o[10*count + first + k];
+        H[(2*NU + 1)*w + k] = o[11*count + first + k];
+        H[(3*NU + 1)*w + k] = o[12*count + first + k];
         t->unreachable[k] += o[13*count + first + k];
         t->singular[k] += o[14*count + first + k];
         t->total[k] += o[15*count + first + k];
@@ -1886,7 +1898,7 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
             inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
@@ -1929,19 +1941,19 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
+        gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* M_ta_rrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* M_ta_rrr_yz */
+        gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* M_aa_rrr_zz */
+        gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[6*count + k] = add ? terms[6*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
+        gather(&terms[6*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[7*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[8*count + k] = add ? terms[8*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* Z_a_rrr_z */
+        gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
         o[0*count + k] = rrr_w_1_x;
         o[1*count + k] = rrr_w_1_y;
@@ -1960,9 +1972,9 @@ INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o[0*count + first + k];
-        H[(6 + leg)*w + k] = o[1*count + first + k];
-        H[(10 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + 2 + leg)*w + k] = o[0*count + first + k];
+        H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
@@ -1974,56 +1986,46 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_prrr_xx = sums[0*w + k];
-        const real M_tt_rrr_xx = sums[9*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_prrr_xx + M_tt_rrr_xx + m_star;
-        const real M_tt_prrr_xy = sums[1*w + k];
-        const real M_tt_rrr_xy = sums[10*w + k];
-        const real M_tt_xy = M_tt_prrr_xy + M_tt_rrr_xy;
-        const real M_tt_prrr_yy = sums[2*w + k];
-        const real M_tt_rrr_yy = sums[11*w + k];
-        const real M_tt_yy = M_tt_prrr_yy + M_tt_rrr_yy + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[2*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_prrr_xz = sums[3*w + k];
-        const real M_ta_rrr_xz = sums[12*w + k];
+        const real M_ta_xz_of_legs = sums[3*w + k];
         const real h_star_y = s[8*w + k];
-        const real M_ta_xz = M_ta_prrr_xz + M_ta_rrr_xz - h_star_y;
-        const real M_ta_prrr_yz = sums[4*w + k];
-        const real M_ta_rrr_yz = sums[13*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yz_of_legs = sums[4*w + k];
         const real h_star_x = s[7*w + k];
-        const real M_ta_yz = M_ta_prrr_yz + M_ta_rrr_yz + h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
-        const real M_aa_prrr_zz = sums[5*w + k];
-        const real M_aa_rrr_zz = sums[14*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_prrr_zz + M_aa_rrr_zz;
+        const real M_aa_zz_of_legs = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[9*w + k];
-        const real Z_t_prrr_x = sums[6*w + k];
-        const real Z_t_rrr_x = sums[15*w + k];
-        const real Z_t_x = Z_p_x + Z_t_prrr_x + Z_t_rrr_x;
+        const real Z_t_x_of_legs = sums[6*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[10*w + k];
-        const real Z_t_prrr_y = sums[7*w + k];
-        const real Z_t_rrr_y = sums[16*w + k];
-        const real Z_t_y = Z_p_y + Z_t_prrr_y + Z_t_rrr_y;
+        const real Z_t_y_of_legs = sums[7*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_prrr_z = sums[8*w + k];
-        const real Z_a_rrr_z = sums[17*w + k];
+        const real Z_a_z_of_legs = sums[8*w + k];
         const real Z_q_z = s[11*w + k];
-        const real Z_a_z = Z_a_prrr_z + Z_a_rrr_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = M_tt_xy;
-        M[4*w + k] = M_tt_xy;
-        M[5*w + k] = M_tt_yy;
+        M[0*NV*w + k] = M_tt_xx;
+        const real M_tt_xy = sums[1*w + k];
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
+        M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[8*w + k] = M_ta_xz;
-        M[6*w + k] = M_ta_yz;
-        M[9*w + k] = M_ta_yz;
+        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*NV*w + k] = M_ta_xz;
+        M[(NV + 2)*w + k] = M_ta_yz;
+        M[(2*NV + 1)*w + k] = M_ta_yz;
         /* (M_aa) rotational block of M */
-        M[10*w + k] = M_aa_zz;
+        M[(2*NV + 2)*w + k] = M_aa_zz;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -2037,23 +2039,27 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[12] = {0}, sums[18] = {0}, terms_prrr[9*LEGS(1)] = {0}, o_prrr[16*LEGS(1)] = {0},
-        terms_rrr[9*LEGS(2)] = {0}, o_rrr[6*LEGS(2)] = {0};
-    clear(H, 16);
+    real s[12] = {0};
+    real sums[9] = {0};
+    real terms_prrr[9*LEGS(LEGS_OF_prrr)] = {0};
+    real o_prrr[16*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    clear(H, NV*NU);
     dynamics_before(m, 1, X, V, s);
-    dynamics_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, V, terms_prrr, o_prrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        dynamics_place_prrr(1, LEGS(1), o_prrr, leg, M, Z, H, t);
+    dynamics_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, V, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
+        dynamics_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, M, Z, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[n] = total(terms_prrr + n*LEGS(1), 1);
+        sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        dynamics_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, t);
+    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[9 + n] = total(terms_rrr + n*LEGS(2), 2);
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -2061,23 +2067,25 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[12*LANES], sums[18*LANES], o_prrr[16*LANES], o_rrr[6*LANES];
-    clear(H, 16*LANES);
+    real s[12*LANES];
+    real sums[9*LANES];
+    real o_prrr[16*LANES];
+    real o_rrr[6*LANES];
+    clear(H, NV*NU*LANES);
     dynamics_before(m, LANES, X, V, s);
     clear(sums, 9*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         dynamics_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prrr);
         dynamics_place_prrr(LANES, LANES, o_prrr, 0, M, Z, H, t);
     }
-    clear(sums + 9*LANES, 9*LANES);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 9*LANES, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
         dynamics_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
-/* ---- M: 246 mul, 170 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2128,7 +2136,7 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
             - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
@@ -2216,10 +2224,10 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x +
             prrr_P_c_2_in_axes0_x*prrr_dy_1_qdd_2;
         /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y;
         /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real prrr_d_G_in_axes3_xx = prrr_d_Gamma_3_in_axes3_x*prrr_w_3_in_axes3_x -
             inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_2_in_axes3_x;
         const real prrr_d_Gamma_3_in_axes3_y = m->prrr_d_Gamma_3_in_axes3_y[i];
@@ -2246,13 +2254,13 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3;
         const real prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2*axis_y_prrr_axes3_x*prrr_Q_t_4;
         /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 1 */
+           extra degree of freedom of joint 1 */
         const real prrr_dy_1_P_1_t = prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y +
             inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
             - prrr_dy_1_Gamma_2);
         const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t;
         /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 1 */
+           degree of freedom of joint 1 */
         const real prrr_d_G_in_axes3_yy = m->prrr_d_G_in_axes3_yy[i];
         const real prrr_d_P_1_in_axes3_y = -prrr_d_G_in_axes3_xy*prrr_e_1_in_axes3_x -
             prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y;
@@ -2271,16 +2279,16 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
         const real prrr_M_ya_1_z = prrr_d_P_1_y*prrr_q_x - prrr_d_P_1_x*prrr_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + prrr_Q_xx : prrr_Q_xx;  /* M_tt_prrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prrr_Q_xy : prrr_Q_xy;  /* M_tt_prrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prrr_Q_yy : prrr_Q_yy;  /* M_tt_prrr_yy */
+        gather(&terms[0*count + k], add, prrr_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, prrr_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, prrr_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        terms[3*count + k] = add ? terms[3*count + k] + prrr_M_ta_t : prrr_M_ta_t;  /* M_ta_prrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + prrr_M_ta_t_2 : prrr_M_ta_t_2;  /* M_ta_prrr_yz */
+        gather(&terms[3*count + k], add, prrr_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, prrr_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        terms[5*count + k] = add ? terms[5*count + k] + prrr_M_aa_t : prrr_M_aa_t;  /* M_aa_prrr_zz */
+        gather(&terms[5*count + k], add, prrr_M_aa_t);  /* M_aa_zz_of_legs */
         /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 1 */
+           degree of freedom of joint 1 */
         o[0*count + k] = prrr_d_P_1_x;
         o[1*count + k] = prrr_d_P_1_x;
         o[2*count + k] = prrr_d_P_1_y;
@@ -2289,7 +2297,7 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         o[4*count + k] = prrr_M_ya_1_z;
         o[5*count + k] = prrr_M_ya_1_z;
         /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 1 */
+           extra degree of freedom of joint 1 */
         o[6*count + k] = prrr_dy_1_P_1;
         o[9*count + k] = (prrr_d_P_1_x + prrr_d_P_1_y) + (prrr_M_ya_1_z + prrr_dy_1_P_1);
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
@@ -2303,13 +2311,13 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
 INLINE void M_place_prrr(size_t w, size_t count, const real *o, size_t first, real *M, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        M[(12)*w + k] = o[0*count + first + k];
-        M[(3)*w + k] = o[1*count + first + k];
-        M[(13)*w + k] = o[2*count + first + k];
-        M[(7)*w + k] = o[3*count + first + k];
-        M[(14)*w + k] = o[4*count + first + k];
-        M[(11)*w + k] = o[5*count + first + k];
-        M[(15)*w + k] = o[6*count + first + k];
+        M[3*NV*w + k] = o[0*count + first + k];
+        M[(0*NV + 3)*w + k] = o[1*count + first + k];
+        M[(3*NV + 1)*w + k] = o[2*count + first + k];
+        M[(NV + 3)*w + k] = o[3*count + first + k];
+        M[(3*NV + 2)*w + k] = o[4*count + first + k];
+        M[(2*NV + 3)*w + k] = o[5*count + first + k];
+        M[(3*NV + 3)*w + k] = o[6*count + first + k];
         t->unreachable[k] += o[7*count + first + k];
         t->singular[k] += o[8*count + first + k];
         t->total[k] += o[9*count + first + k];
@@ -2430,14 +2438,14 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (M_aa) rotational block of M */
         const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
+        gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* M_ta_rrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* M_ta_rrr_yz */
+        gather(&terms[3*count + k], add, rrr_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* M_aa_rrr_zz */
+        gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
@@ -2459,86 +2467,85 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_prrr_xx = sums[0*w + k];
-        const real M_tt_rrr_xx = sums[6*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_prrr_xx + M_tt_rrr_xx + m_star;
-        const real M_tt_prrr_xy = sums[1*w + k];
-        const real M_tt_rrr_xy = sums[7*w + k];
-        const real M_tt_xy = M_tt_prrr_xy + M_tt_rrr_xy;
-        const real M_tt_prrr_yy = sums[2*w + k];
-        const real M_tt_rrr_yy = sums[8*w + k];
-        const real M_tt_yy = M_tt_prrr_yy + M_tt_rrr_yy + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[2*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_prrr_xz = sums[3*w + k];
-        const real M_ta_rrr_xz = sums[9*w + k];
+        const real M_ta_xz_of_legs = sums[3*w + k];
         const real h_star_y = s[5*w + k];
-        const real M_ta_xz = M_ta_prrr_xz + M_ta_rrr_xz - h_star_y;
-        const real M_ta_prrr_yz = sums[4*w + k];
-        const real M_ta_rrr_yz = sums[10*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yz_of_legs = sums[4*w + k];
         const real h_star_x = s[4*w + k];
-        const real M_ta_yz = M_ta_prrr_yz + M_ta_rrr_yz + h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
-        const real M_aa_prrr_zz = sums[5*w + k];
-        const real M_aa_rrr_zz = sums[11*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_prrr_zz + M_aa_rrr_zz;
+        const real M_aa_zz_of_legs = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = M_tt_xy;
-        M[4*w + k] = M_tt_xy;
-        M[5*w + k] = M_tt_yy;
+        M[0*NV*w + k] = M_tt_xx;
+        const real M_tt_xy = sums[1*w + k];
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
+        M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[2*w + k] = M_ta_xz;
-        M[8*w + k] = M_ta_xz;
-        M[6*w + k] = M_ta_yz;
-        M[9*w + k] = M_ta_yz;
+        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*NV*w + k] = M_ta_xz;
+        M[(NV + 2)*w + k] = M_ta_yz;
+        M[(2*NV + 1)*w + k] = M_ta_yz;
         /* (M_aa) rotational block of M */
-        M[10*w + k] = M_aa_zz;
+        M[(2*NV + 2)*w + k] = M_aa_zz;
         t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
     }
 }
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6] = {0}, sums[12] = {0}, terms_prrr[6*LEGS(1)] = {0}, o_prrr[10*LEGS(1)] = {0},
-        terms_rrr[6*LEGS(2)] = {0}, o_rrr[2*LEGS(2)] = {0};
+    real s[6] = {0};
+    real sums[6] = {0};
+    real terms_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
+    real o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     M_before(m, 1, X, s);
-    M_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, terms_prrr, o_prrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        M_place_prrr(1, LEGS(1), o_prrr, leg, M, t);
+    M_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
+        M_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, M, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_prrr + n*LEGS(1), 1);
+        sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        M_place_rrr(1, LEGS(2), o_rrr, leg, t);
+    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[6 + n] = total(terms_rrr + n*LEGS(2), 2);
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     M_after(m, 1, s, sums, M, t);
 }
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6*LANES], sums[12*LANES], o_prrr[10*LANES], o_rrr[2*LANES];
+    real s[6*LANES];
+    real sums[6*LANES];
+    real o_prrr[10*LANES];
+    real o_rrr[2*LANES];
     M_before(m, LANES, X, s);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         M_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_prrr);
         M_place_prrr(LANES, LANES, o_prrr, 0, M, t);
     }
-    clear(sums + 6*LANES, 6*LANES);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 6*LANES, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
         M_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
 }
 
-/* ---- Z: 312 mul, 196 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2611,7 +2618,7 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
             - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
@@ -2666,7 +2673,7 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (prrr-w_2) reciprocal vector 1 */
         const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_yd_1 = V[3*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
         /* (prrr-qd_2) rate of joint 2 */
@@ -2749,7 +2756,7 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real prrr_T_1_o_in_axes0_x = prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_x
             - prrr_f_2_o_in_axes2_y*prrr_s_2;
         /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y;
         const real prrr_G_o_in_axes3_x =
             inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x -
@@ -2766,19 +2773,19 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real prrr_U_y = axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
             axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
         /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 1 */
+           extra degree of freedom of joint 1 */
         const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_e_1_in_axes3_x +
             prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y;
         const real prrr_P_1_o = prrr_T_1_o_in_axes0_x - prrr_P_1_o_t;
         /* (Z_a) rotational part of Z */
         const real prrr_Z_a_t = prrr_U_y*prrr_q_x - prrr_U_x*prrr_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + prrr_U_x : prrr_U_x;  /* Z_t_prrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prrr_U_y : prrr_U_y;  /* Z_t_prrr_y */
+        gather(&terms[0*count + k], add, prrr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, prrr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[2*count + k] = add ? terms[2*count + k] + prrr_Z_a_t : prrr_Z_a_t;  /* Z_a_prrr_z */
+        gather(&terms[2*count + k], add, prrr_Z_a_t);  /* Z_a_z_of_legs */
         /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 1 */
+           extra degree of freedom of joint 1 */
         o[0*count + k] = prrr_P_1_o;
         o[3*count + k] = prrr_P_1_o;
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
@@ -2792,7 +2799,7 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
 INLINE void Z_place_prrr(size_t w, size_t count, const real *o, size_t first, real *Z, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Z[(3)*w + k] = o[0*count + first + k];
+        Z[3*w + k] = o[0*count + first + k];
         t->unreachable[k] += o[1*count + first + k];
         t->singular[k] += o[2*count + first + k];
         t->total[k] += o[3*count + first + k];
@@ -2941,7 +2948,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
@@ -2958,10 +2965,10 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (Z_a) rotational part of Z */
         const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
+        gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* Z_a_rrr_z */
+        gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
@@ -2983,18 +2990,15 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[7*w + k];
-        const real Z_t_prrr_x = sums[0*w + k];
-        const real Z_t_rrr_x = sums[3*w + k];
-        const real Z_t_x = Z_p_x + Z_t_prrr_x + Z_t_rrr_x;
+        const real Z_t_x_of_legs = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[8*w + k];
-        const real Z_t_prrr_y = sums[1*w + k];
-        const real Z_t_rrr_y = sums[4*w + k];
-        const real Z_t_y = Z_p_y + Z_t_prrr_y + Z_t_rrr_y;
+        const real Z_t_y_of_legs = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_prrr_z = sums[2*w + k];
-        const real Z_a_rrr_z = sums[5*w + k];
+        const real Z_a_z_of_legs = sums[2*w + k];
         const real Z_q_z = s[9*w + k];
-        const real Z_a_z = Z_a_prrr_z + Z_a_rrr_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -3006,44 +3010,50 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10] = {0}, sums[6] = {0}, terms_prrr[3*LEGS(1)] = {0}, o_prrr[4*LEGS(1)] = {0},
-        terms_rrr[3*LEGS(2)] = {0}, o_rrr[2*LEGS(2)] = {0};
+    real s[10] = {0};
+    real sums[3] = {0};
+    real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0};
+    real o_prrr[4*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     Z_before(m, 1, X, V, s);
-    Z_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, V, terms_prrr, o_prrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        Z_place_prrr(1, LEGS(1), o_prrr, leg, Z, t);
+    Z_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, V, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
+        Z_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, Z, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] = total(terms_prrr + n*LEGS(1), 1);
+        sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        Z_place_rrr(1, LEGS(2), o_rrr, leg, t);
+    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[3 + n] = total(terms_rrr + n*LEGS(2), 2);
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     Z_after(1, s, sums, Z, t);
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10*LANES], sums[6*LANES], o_prrr[4*LANES], o_rrr[2*LANES];
+    real s[10*LANES];
+    real sums[3*LANES];
+    real o_prrr[4*LANES];
+    real o_rrr[2*LANES];
     Z_before(m, LANES, X, V, s);
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         Z_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prrr);
         Z_place_prrr(LANES, LANES, o_prrr, 0, Z, t);
     }
-    clear(sums + 3*LANES, 3*LANES);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 3*LANES, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
         Z_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
-/* ---- H: 142 mul, 70 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- H ---- */
 INLINE void H_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3087,7 +3097,7 @@ INLINE void H_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
             - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
@@ -3162,11 +3172,11 @@ INLINE void H_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
 INLINE void H_place_prrr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(12)*w + k] = o[0*count + first + k];
-        H[(1)*w + k] = o[1*count + first + k];
-        H[(5)*w + k] = o[2*count + first + k];
-        H[(9)*w + k] = o[3*count + first + k];
-        H[(13)*w + k] = o[4*count + first + k];
+        H[3*NU*w + k] = o[0*count + first + k];
+        H[(0*NU + 1)*w + k] = o[1*count + first + k];
+        H[(NU + 1)*w + k] = o[2*count + first + k];
+        H[(2*NU + 1)*w + k] = o[3*count + first + k];
+        H[(3*NU + 1)*w + k] = o[4*count + first + k];
         t->unreachable[k] += o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
         t->total[k] += o[7*count + first + k];
@@ -3266,9 +3276,9 @@ INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o[0*count + first + k];
-        H[(6 + leg)*w + k] = o[1*count + first + k];
-        H[(10 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + 2 + leg)*w + k] = o[0*count + first + k];
+        H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
@@ -3277,35 +3287,39 @@ INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4] = {0}, o_prrr[8*LEGS(1)] = {0}, o_rrr[6*LEGS(2)] = {0};
-    clear(H, 16);
+    real s[4] = {0};
+    real o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    clear(H, NV*NU);
     H_before(1, X, s);
-    H_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), X, o_prrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        H_place_prrr(1, LEGS(1), o_prrr, leg, H, t);
+    H_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, o_prrr);
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
+        H_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, H, t);
     }
-    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        H_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, t);
+    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        H_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
     }
 }
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4*LANES], o_prrr[8*LANES], o_rrr[6*LANES];
-    clear(H, 16*LANES);
+    real s[4*LANES];
+    real o_prrr[8*LANES];
+    real o_rrr[6*LANES];
+    clear(H, NV*NU*LANES);
     H_before(LANES, X, s);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         H_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, o_prrr);
         H_place_prrr(LANES, LANES, o_prrr, 0, H, t);
     }
-    for (size_t leg = 0; leg < 2; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
         H_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
 }
 
-/* ---- required: 341 mul, 221 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- required ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
     *A, real *s)
 {
@@ -3393,7 +3407,7 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
             - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
@@ -3457,7 +3471,7 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         const real prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
         const real prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_yd_1 = V[3*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
         /* (prrr-qd_2) rate of joint 2 */
@@ -3489,7 +3503,7 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
             prrr_W_3_t*prrr_platform_joint_offset_x;
         /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prrr_ydd_1 = A[(3)*w + j];
+        const real prrr_ydd_1 = A[3*w + j];
         const real prrr_rel_in_axes3_x = prrr_S_ddot_in_axes3_x - prrr_bias_in_axes3_x -
             prrr_e_1_in_axes3_x*prrr_ydd_1;
         const real prrr_rel_in_axes3_y = prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
@@ -3541,7 +3555,7 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         const real prrr_T_1_in_axes0_x = prrr_acc_1_in_axes0_x*prrr_link1_mass +
             prrr_c_2*prrr_f_2_in_axes2_x - prrr_f_2_in_axes2_y*prrr_s_2;
         /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y;
         const real prrr_G_in_axes3_x =
             inv_prrr_r_2_in_axes3_y*(prrr_G_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_in_axes2_z);
@@ -3555,7 +3569,7 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
             axis_y_prrr_axes3_x*prrr_c_in_axes3_y;
         const real prrr_c_y = axis_x_prrr_axes3_x*prrr_c_in_axes3_y -
             axis_y_prrr_axes3_x*prrr_c_in_axes3_x;
-        /* (prrr-P_1) inertia and weight of the leg along the extra freedom of joint 1 */
+        /* (prrr-P_1) inertia and weight of the leg along the extra degree of freedom of joint 1 */
         const real prrr_P_1_t = prrr_G_in_axes3_x*prrr_e_1_in_axes3_x +
             prrr_G_in_axes3_y*prrr_e_1_in_axes3_y;
         const real prrr_P_1 = prrr_T_1_in_axes0_x - prrr_P_1_t;
@@ -3564,11 +3578,11 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
         const real prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + prrr_c_x : prrr_c_x;  /* R_t_t */
-        terms[1*count + k] = add ? terms[1*count + k] + prrr_c_y : prrr_c_y;  /* R_t_t_2 */
+        gather(&terms[0*count + k], add, prrr_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, prrr_c_y);  /* R_t_y_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[2*count + k] = add ? terms[2*count + k] + prrr_R_a_t : prrr_R_a_t;  /* R_a_prrr_z */
-        /* (prrr-P_1) inertia and weight of the leg along the extra freedom of joint 1 */
+        gather(&terms[2*count + k], add, prrr_R_a_t);  /* R_a_z_of_legs */
+        /* (prrr-P_1) inertia and weight of the leg along the extra degree of freedom of joint 1 */
         o[0*count + k] = prrr_P_1;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[1*count + k] = 1;
@@ -3591,12 +3605,12 @@ INLINE void required_place_prrr(size_t w, size_t count, const real *o, size_t fi
     *required, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        required[(3)*w + k] = o[0*count + first + k];
-        H[(12)*w + k] = o[1*count + first + k];
-        H[(1)*w + k] = o[2*count + first + k];
-        H[(5)*w + k] = o[3*count + first + k];
-        H[(9)*w + k] = o[4*count + first + k];
-        H[(13)*w + k] = o[5*count + first + k];
+        required[3*w + k] = o[0*count + first + k];
+        H[3*NU*w + k] = o[1*count + first + k];
+        H[(0*NU + 1)*w + k] = o[2*count + first + k];
+        H[(NU + 1)*w + k] = o[3*count + first + k];
+        H[(2*NU + 1)*w + k] = o[4*count + first + k];
+        H[(3*NU + 1)*w + k] = o[5*count + first + k];
         t->unreachable[k] += o[6*count + first + k];
         t->singular[k] += o[7*count + first + k];
     }
@@ -3748,7 +3762,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
            left out */
         const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
@@ -3766,10 +3780,10 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_x : rrr_c_x;  /* R_t_t_3 */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_y : rrr_c_y;  /* R_t_t_4 */
+        gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_R_a_t : rrr_R_a_t;  /* R_a_rrr_z */
+        gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
         o[0*count + k] = rrr_w_1_x;
         o[1*count + k] = rrr_w_1_y;
@@ -3787,9 +3801,9 @@ INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o[0*count + first + k];
-        H[(6 + leg)*w + k] = o[1*count + first + k];
-        H[(10 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + 2 + leg)*w + k] = o[0*count + first + k];
+        H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
     }
@@ -3799,19 +3813,16 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
-        const real R_t_t = sums[0*w + k];
-        const real R_t_t_3 = sums[3*w + k];
+        const real R_t_x_of_legs = sums[0*w + k];
         const real f_p_x = s[10*w + k];
-        const real R_t_x = f_p_x - R_t_t - R_t_t_3;
-        const real R_t_t_2 = sums[1*w + k];
-        const real R_t_t_4 = sums[4*w + k];
+        const real R_t_x = f_p_x - R_t_x_of_legs;
+        const real R_t_y_of_legs = sums[1*w + k];
         const real f_p_y = s[11*w + k];
-        const real R_t_y = f_p_y - R_t_t_2 - R_t_t_4;
+        const real R_t_y = f_p_y - R_t_y_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_prrr_z = sums[2*w + k];
-        const real R_a_rrr_z = sums[5*w + k];
+        const real R_a_z_of_legs = sums[2*w + k];
         const real mu_p_z = s[12*w + k];
-        const real R_a_z = R_a_prrr_z + R_a_rrr_z + mu_p_z;
+        const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -3823,23 +3834,27 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[13] = {0}, sums[6] = {0}, terms_prrr[3*LEGS(1)] = {0}, o_prrr[8*LEGS(1)] = {0},
-        terms_rrr[3*LEGS(2)] = {0}, o_rrr[5*LEGS(2)] = {0};
-    clear(H, 16);
+    real s[13] = {0};
+    real sums[3] = {0};
+    real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0};
+    real o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    clear(H, NV*NU);
     required_before(m, 1, X, V, A, s);
-    required_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, V, A, terms_prrr, o_prrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        required_place_prrr(1, LEGS(1), o_prrr, leg, required, H, t);
+    required_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, V, A, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
+        required_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, required, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] = total(terms_prrr + n*LEGS(1), 1);
+        sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        required_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, t);
+    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[3 + n] = total(terms_rrr + n*LEGS(2), 2);
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     required_after(1, s, sums, required);
 }
@@ -3847,23 +3862,25 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[13*LANES], sums[6*LANES], o_prrr[8*LANES], o_rrr[5*LANES];
-    clear(H, 16*LANES);
+    real s[13*LANES];
+    real sums[3*LANES];
+    real o_prrr[8*LANES];
+    real o_rrr[5*LANES];
+    clear(H, NV*NU*LANES);
     required_before(m, LANES, X, V, A, s);
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         required_legs_prrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_prrr);
         required_place_prrr(LANES, LANES, o_prrr, 0, required, H, t);
     }
-    clear(sums + 3*LANES, 3*LANES);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums + 3*LANES, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
         required_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
-/* ---- inverse_kinematics: 93 mul, 49 add, 3 div, 3 sqrt, 6 trig, every leg counted ---- */
+/* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3907,7 +3924,7 @@ INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t leg
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
             - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
@@ -3960,9 +3977,9 @@ INLINE void inverse_kinematics_place_prrr(size_t w, size_t count, const real *o,
     real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(0)*w + k] = o[0*count + first + k];
-        q[(1)*w + k] = o[1*count + first + k];
-        q[(2)*w + k] = o[2*count + first + k];
+        q[0*w + k] = o[0*count + first + k];
+        q[1*w + k] = o[1*count + first + k];
+        q[2*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
@@ -4053,33 +4070,37 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4] = {0}, o_prrr[6*LEGS(1)] = {0}, o_rrr[5*LEGS(2)] = {0};
+    real s[4] = {0};
+    real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     inverse_kinematics_before(1, X, s);
-    inverse_kinematics_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), X, o_prrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        inverse_kinematics_place_prrr(1, LEGS(1), o_prrr, leg, q, t);
+    inverse_kinematics_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, o_prrr);
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
+        inverse_kinematics_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, q, t);
     }
-    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        inverse_kinematics_place_rrr(1, LEGS(2), o_rrr, leg, leg, q, t);
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        inverse_kinematics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, q, t);
     }
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4*LANES], o_prrr[6*LANES], o_rrr[5*LANES];
+    real s[4*LANES];
+    real o_prrr[6*LANES];
+    real o_rrr[5*LANES];
     inverse_kinematics_before(LANES, X, s);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         inverse_kinematics_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, o_prrr);
         inverse_kinematics_place_prrr(LANES, LANES, o_prrr, 0, q, t);
     }
-    for (size_t leg = 0; leg < 2; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
         inverse_kinematics_place_rrr(LANES, LANES, o_rrr, leg, 0, q, t);
     }
 }
 
-/* ---- joint_rates: 161 mul, 87 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates ---- */
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -4133,7 +4154,7 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t leg, size_
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
             - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
@@ -4183,7 +4204,7 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t leg, size_
             prrr_c_3*prrr_platform_joint_offset_x;
         const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_yd_1 = V[3*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
         /* (prrr-qd_2) rate of joint 2 */
@@ -4219,9 +4240,9 @@ INLINE void joint_rates_place_prrr(size_t w, size_t count, const real *o, size_t
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(0)*w + k] = o[0*count + first + k];
-        qd[(1)*w + k] = o[1*count + first + k];
-        qd[(2)*w + k] = o[2*count + first + k];
+        qd[0*w + k] = o[0*count + first + k];
+        qd[1*w + k] = o[1*count + first + k];
+        qd[2*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
@@ -4340,34 +4361,38 @@ INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[7] = {0}, o_prrr[6*LEGS(1)] = {0}, o_rrr[5*LEGS(2)] = {0};
+    real s[7] = {0};
+    real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     joint_rates_before(1, X, V, s);
-    joint_rates_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), X, V, o_prrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        joint_rates_place_prrr(1, LEGS(1), o_prrr, leg, qd, t);
+    joint_rates_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, V, o_prrr);
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
+        joint_rates_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, qd, t);
     }
-    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        joint_rates_place_rrr(1, LEGS(2), o_rrr, leg, leg, qd, t);
+    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        joint_rates_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, qd, t);
     }
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[7*LANES], o_prrr[6*LANES], o_rrr[5*LANES];
+    real s[7*LANES];
+    real o_prrr[6*LANES];
+    real o_rrr[5*LANES];
     joint_rates_before(LANES, X, V, s);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         joint_rates_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, V, o_prrr);
         joint_rates_place_prrr(LANES, LANES, o_prrr, 0, qd, t);
     }
-    for (size_t leg = 0; leg < 2; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
         joint_rates_place_rrr(LANES, LANES, o_rrr, leg, 0, qd, t);
     }
 }
 
-/* ---- joint_accelerations: 220 mul, 122 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations ---- */
 INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
     *s)
 {
@@ -4433,7 +4458,7 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t le
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
             - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
@@ -4488,7 +4513,7 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t le
         /* (prrr-w_2) reciprocal vector 1 */
         const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_yd_1 = V[3*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
         /* (prrr-qd_2) rate of joint 2 */
@@ -4520,7 +4545,7 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t le
         const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
             prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x;
         /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prrr_ydd_1 = A[(3)*w + j];
+        const real prrr_ydd_1 = A[3*w + j];
         const real prrr_rel_in_axes3_x = axis_x_prrr_axes3_x*prrr_S_ddot_x - prrr_bias_in_axes3_x
             - axis_y_prrr_axes3_x*prrr_S_ddot_y - prrr_e_1_in_axes3_x*prrr_ydd_1;
         const real prrr_rel_in_axes3_y = axis_x_prrr_axes3_x*prrr_S_ddot_y +
@@ -4550,9 +4575,9 @@ INLINE void joint_accelerations_place_prrr(size_t w, size_t count, const real *o
     real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(0)*w + k] = o[0*count + first + k];
-        qdd[(1)*w + k] = o[1*count + first + k];
-        qdd[(2)*w + k] = o[2*count + first + k];
+        qdd[0*w + k] = o[0*count + first + k];
+        qdd[1*w + k] = o[1*count + first + k];
+        qdd[2*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
@@ -4701,34 +4726,38 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[10] = {0}, o_prrr[6*LEGS(1)] = {0}, o_rrr[5*LEGS(2)] = {0};
+    real s[10] = {0};
+    real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     joint_accelerations_before(1, X, V, A, s);
-    joint_accelerations_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), X, V, A, o_prrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        joint_accelerations_place_prrr(1, LEGS(1), o_prrr, leg, qdd, t);
+    joint_accelerations_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, V, A, o_prrr);
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
+        joint_accelerations_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, qdd, t);
     }
-    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        joint_accelerations_place_rrr(1, LEGS(2), o_rrr, leg, leg, qdd, t);
+    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        joint_accelerations_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[10*LANES], o_prrr[6*LANES], o_rrr[5*LANES];
+    real s[10*LANES];
+    real o_prrr[6*LANES];
+    real o_rrr[5*LANES];
     joint_accelerations_before(LANES, X, V, A, s);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         joint_accelerations_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_prrr);
         joint_accelerations_place_prrr(LANES, LANES, o_prrr, 0, qdd, t);
     }
-    for (size_t leg = 0; leg < 2; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
         joint_accelerations_place_rrr(LANES, LANES, o_rrr, leg, 0, qdd, t);
     }
 }
 
-/* ---- legs: 309 mul, 187 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs ---- */
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -4792,7 +4821,7 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
             - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
@@ -4855,7 +4884,7 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
         const real prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
         const real prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_yd_1 = V[(3)*w + j];
+        const real prrr_yd_1 = V[3*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
         /* (prrr-qd_2) rate of joint 2 */
@@ -4887,7 +4916,7 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
         const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
             prrr_W_3_t*prrr_platform_joint_offset_x;
         /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prrr_ydd_1 = A[(3)*w + j];
+        const real prrr_ydd_1 = A[3*w + j];
         const real prrr_rel_in_axes3_x = prrr_S_ddot_in_axes3_x - prrr_bias_in_axes3_x -
             prrr_e_1_in_axes3_x*prrr_ydd_1;
         const real prrr_rel_in_axes3_y = prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
@@ -4927,7 +4956,7 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
            left out */
         const real prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z;
         /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y;
         /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
@@ -4961,13 +4990,13 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
 }
 
 INLINE void legs_place_prrr(size_t w, size_t count, const real *o, size_t first, real *leg_force,
-    real *drive, verdict *t)
+    real *actuator, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(0)*w + k] = o[0*count + first + k];
-        leg_force[(1)*w + k] = o[1*count + first + k];
-        drive[(3)*w + k] = o[2*count + first + k];
-        drive[(4)*w + k] = o[3*count + first + k];
+        leg_force[0*w + k] = o[0*count + first + k];
+        leg_force[1*w + k] = o[1*count + first + k];
+        actuator[3*w + k] = o[2*count + first + k];
+        actuator[(3 + 1)*w + k] = o[3*count + first + k];
         t->unreachable[k] += o[4*count + first + k];
         t->singular[k] += o[5*count + first + k];
     }
@@ -5119,7 +5148,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
            left out */
         const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
@@ -5151,36 +5180,38 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
 }
 
 INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3 + 3*leg)*w + k] = o[0*count + first + k];
-        leg_force[(4 + 3*leg)*w + k] = o[1*count + first + k];
-        drive[(6 + 3*leg)*w + k] = o[2*count + first + k];
-        drive[(7 + 3*leg)*w + k] = o[3*count + first + k];
+        leg_force[(3*(1 + leg))*w + k] = o[0*count + first + k];
+        leg_force[(3*(1 + leg) + 1)*w + k] = o[1*count + first + k];
+        actuator[(3*(2 + leg))*w + k] = o[2*count + first + k];
+        actuator[(3*(2 + leg) + 1)*w + k] = o[3*count + first + k];
         t->unreachable[k] += o[4*count + first + k];
         t->singular[k] += o[5*count + first + k];
     }
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
-    real s[10] = {0}, o_prrr[6*LEGS(1)] = {0}, o_rrr[6*LEGS(2)] = {0};
-    clear(leg_force, 9);
-    clear(drive, 12);
+    real s[10] = {0};
+    real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    clear(leg_force, 3*NL);
+    clear(actuator, 12);
     legs_before(1, X, V, A, s);
-    legs_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), X, V, A, o_prrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        legs_place_prrr(1, LEGS(1), o_prrr, leg, leg_force, drive, t);
+    legs_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, V, A, o_prrr);
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
+        legs_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, leg_force, actuator, t);
     }
-    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), o_rrr);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        legs_place_rrr(1, LEGS(2), o_rrr, leg, leg, leg_force, drive, t);
+    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        legs_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, leg_force, actuator, t);
     }
 }
 
-/* ---- potential: 149 mul, 97 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -5234,7 +5265,7 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
             - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
@@ -5299,7 +5330,7 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
             prrr_c_2*prrr_h_2_in_spec2_y + prrr_c_2*prrr_potential_t_5 +
             prrr_h_2_in_spec2_x*prrr_s_2 + prrr_potential_t_4*prrr_s_2 - prrr_h_1_in_spec0_x);
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + -prrr_potential_t_6 : -prrr_potential_t_6;  /* potential_prrr */
+        gather(&terms[0*count + k], add, -prrr_potential_t_6);  /* potential_of_legs */
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         o[1*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t);
         o[0*count + k] = UNLESS(prrr_disc_2 >= 0);
@@ -5393,7 +5424,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
             rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
             rrr_potential_t*rrr_s_1));
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t_3 : rrr_potential_t_3;  /* potential_t_2 */
+        gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
@@ -5412,10 +5443,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
-        const real potential_prrr = sums[0*w + k];
+        const real potential_of_legs = sums[0*w + k];
         const real potential_t = s[4*w + k];
         const real potential_t_2 = sums[1*w + k];
-        const real potential_ = potential_prrr - potential_t - potential_t_2;
+        const real potential_ = potential_of_legs - potential_t - potential_t_2;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
@@ -5423,27 +5454,31 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[5] = {0}, sums[2] = {0}, terms_prrr[1*LEGS(1)] = {0}, o_prrr[2*LEGS(1)] = {0},
-        terms_rrr[1*LEGS(2)] = {0}, o_rrr[2*LEGS(2)] = {0};
+    real s[5] = {0};
+    real sums[2] = {0};
+    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0};
+    real o_prrr[2*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     potential_before(m, 1, X, s);
-    potential_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, terms_prrr, o_prrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        potential_place_prrr(1, LEGS(1), o_prrr, leg, t);
+    potential_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
+        potential_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_prrr + n*LEGS(1), 1);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        potential_place_rrr(1, LEGS(2), o_rrr, leg, t);
+    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[1 + n] = total(terms_rrr + n*LEGS(2), 2);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     potential_after(1, s, sums, potential);
 }
 
-/* ---- condition: 156 mul, 86 add, 6 div, 7 sqrt, 0 trig, every leg counted ---- */
+/* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
     verdict *t)
 {
@@ -5492,7 +5527,7 @@ INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[(3)*w + j];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
             - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
@@ -5545,7 +5580,7 @@ INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
         const real prrr_w_2_y = inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xy*prrr_e_1_in_axes3_y -
             prrr_base_frame_xx*prrr_e_1_in_axes3_x);
         /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real prrr_pivot_size = magnitude(prrr_rho2_2);
         const real prrr_pivot_size_2 = magnitude(prrr_r_2_in_axes3_y);
         const real inv_prrr_rho2_2_t = m->inv_prrr_rho2_2_t[i];
@@ -5562,7 +5597,7 @@ INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
         const real prrr_spread_t_3 = prrr_spread_t*prrr_spread_t +
             prrr_spread_t_2*prrr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + prrr_spread_t_3 : prrr_spread_t_3;  /* spread_prrr */
+        gather(&terms[0*count + k], add, prrr_spread_t_3);  /* spread_prrr */
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = 1;
         /* (prrr-w_2) reciprocal vector 1 */
@@ -5573,7 +5608,7 @@ INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
         /* (prrr-w_2) reciprocal vector 1 */
         o[4*count + k] = prrr_w_2_t;
         /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[5*count + k] = prrr_least_pivots;
         o[6*count + k] = prrr_disc_2;
         o[9*count + k] = (prrr_w_2_x + (prrr_w_2_y + prrr_H_a_2_z)) + (prrr_w_2_t +
@@ -5590,13 +5625,13 @@ INLINE void condition_place_prrr(size_t w, size_t count, const real *o, size_t f
     real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(12)*w + k] = o[0*count + first + k];
-        H[(1)*w + k] = o[1*count + first + k];
-        H[(5)*w + k] = o[2*count + first + k];
-        H[(9)*w + k] = o[3*count + first + k];
-        H[(13)*w + k] = o[4*count + first + k];
-        pivots[(0)*w + k] = o[5*count + first + k];
-        reach[(0)*w + k] = o[6*count + first + k];
+        H[3*NU*w + k] = o[0*count + first + k];
+        H[(0*NU + 1)*w + k] = o[1*count + first + k];
+        H[(NU + 1)*w + k] = o[2*count + first + k];
+        H[(2*NU + 1)*w + k] = o[3*count + first + k];
+        H[(3*NU + 1)*w + k] = o[4*count + first + k];
+        pivots[0*w + k] = o[5*count + first + k];
+        reach[0*w + k] = o[6*count + first + k];
         t->unreachable[k] += o[7*count + first + k];
         t->singular[k] += o[8*count + first + k];
         t->total[k] += o[9*count + first + k];
@@ -5677,7 +5712,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 -
             rrr_base_frame_xx*rrr_w_1_t);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real rrr_pivot_size = magnitude(rrr_rho2_1);
         const real rrr_pivot_size_2 = magnitude(rrr_r_1_in_axes2_y);
         const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
@@ -5693,14 +5728,14 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
         const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* spread_rrr */
+        gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
         /* (rrr-w_1) reciprocal vector 1 */
         o[0*count + k] = rrr_w_1_x;
         o[1*count + k] = rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[3*count + k] = rrr_least_pivots;
         o[4*count + k] = rrr_disc_1;
         o[7*count + k] = (rrr_w_1_x + rrr_w_1_y) + (rrr_H_a_1_z + (rrr_least_pivots +
@@ -5717,9 +5752,9 @@ INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(2 + leg)*w + k] = o[0*count + first + k];
-        H[(6 + leg)*w + k] = o[1*count + first + k];
-        H[(10 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + 2 + leg)*w + k] = o[0*count + first + k];
+        H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
         pivots[(1 + leg)*w + k] = o[3*count + first + k];
         reach[(1 + leg)*w + k] = o[4*count + first + k];
         t->unreachable[k] += o[5*count + first + k];
@@ -5745,23 +5780,27 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[4] = {0}, sums[2] = {0}, terms_prrr[1*LEGS(1)] = {0}, o_prrr[10*LEGS(1)] = {0},
-        terms_rrr[1*LEGS(2)] = {0}, o_rrr[8*LEGS(2)] = {0};
-    clear(H, 16);
+    real s[4] = {0};
+    real sums[2] = {0};
+    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0};
+    real o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
+    clear(H, NV*NU);
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_prrr(m, 1, 0, 1, s, 0, LEGS(1), 0, X, terms_prrr, o_prrr);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        condition_place_prrr(1, LEGS(1), o_prrr, leg, H, pivots, reach, t);
+    condition_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, terms_prrr, o_prrr);
+    for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
+        condition_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_prrr + n*LEGS(1), 1);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(2), 0, terms_rrr, o_rrr);
-    for (size_t leg = 0; leg < 2; ++leg) {
-        condition_place_rrr(1, LEGS(2), o_rrr, leg, leg, H, pivots, reach, t);
+    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
+        condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[1 + n] = total(terms_rrr + n*LEGS(2), 2);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     condition_after(1, sums, lengths, t);
 }
@@ -5770,260 +5809,260 @@ INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengt
 
 INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real M[16] = {0};
+    real M[NV*NV] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     M_run(m, X, M, &why);
     if (!is_finite(why.total[0])) {
-        check(16, 1, M, why.overflow);
+        check(NV*NV, 1, M, why.overflow);
     }
     judge(&why, code);
-    copy(16, M, M_out);
+    copy(NV*NV, M, M_out);
     if (*code != OK) {
-        refuse(16, M_out);
+        refuse(NV*NV, M_out);
     }
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[4*LANES], M[16*LANES];
+    real X_in[NQ*LANES], M[NV*NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
     suspect(&why, code);
-    deliver(16, M, M_out);
+    deliver(NV*NV, M, M_out);
 }
 
 INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real Z[4] = {0};
+    real Z[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     Z_run(m, X, V, Z, &why);
     if (!is_finite(why.total[0])) {
-        check(4, 1, Z, why.overflow);
+        check(NV, 1, Z, why.overflow);
     }
     judge(&why, code);
-    copy(4, Z, Z_out);
+    copy(NV, Z, Z_out);
     if (*code != OK) {
-        refuse(4, Z_out);
+        refuse(NV, Z_out);
     }
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[4*LANES], V_in[4*LANES], Z[4*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(4, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
     suspect(&why, code);
-    deliver(4, Z, Z_out);
+    deliver(NV, Z, Z_out);
 }
 
 INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real H[16] = {0};
+    real H[NV*NU] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H, &why);
     if (!is_finite(why.total[0])) {
-        check(16, 1, H, why.overflow);
+        check(NV*NU, 1, H, why.overflow);
     }
     judge(&why, code);
-    copy(16, H, H_out);
+    copy(NV*NU, H, H_out);
     if (*code != OK) {
-        refuse(16, H_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[4*LANES], H[16*LANES];
+    real X_in[NQ*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
     suspect(&why, code);
-    deliver(16, H, H_out);
+    deliver(NV*NU, H, H_out);
 }
 
 INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real q[7] = {0};
+    real q[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     if (!is_finite(why.total[0])) {
-        check(7, 1, q, why.overflow);
+        check(NJ, 1, q, why.overflow);
     }
     judge(&why, code);
-    copy(7, q, q_out);
+    copy(NJ, q, q_out);
     if (*code != OK) {
-        refuse(7, q_out);
+        refuse(NJ, q_out);
     }
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[4*LANES], q[7*LANES];
+    real X_in[NQ*LANES], q[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
     suspect(&why, code);
-    deliver(7, q, q_out);
+    deliver(NJ, q, q_out);
 }
 
 INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real qd[7] = {0};
+    real qd[NJ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd, &why);
     if (!is_finite(why.total[0])) {
-        check(7, 1, qd, why.overflow);
+        check(NJ, 1, qd, why.overflow);
     }
     judge(&why, code);
-    copy(7, qd, qd_out);
+    copy(NJ, qd, qd_out);
     if (*code != OK) {
-        refuse(7, qd_out);
+        refuse(NJ, qd_out);
     }
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[4*LANES], V_in[4*LANES], qd[7*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(4, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
     suspect(&why, code);
-    deliver(7, qd, qd_out);
+    deliver(NJ, qd, qd_out);
 }
 
 INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real qdd[7] = {0};
+    real qdd[NJ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4) + total(A, 4);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
-        check(4, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd, &why);
     if (!is_finite(why.total[0])) {
-        check(7, 1, qdd, why.overflow);
+        check(NJ, 1, qdd, why.overflow);
     }
     judge(&why, code);
-    copy(7, qdd, qdd_out);
+    copy(NJ, qdd, qdd_out);
     if (*code != OK) {
-        refuse(7, qdd_out);
+        refuse(NJ, qdd_out);
     }
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[4*LANES], V_in[4*LANES], A_in[4*LANES], qdd[7*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(4, V, V_in, why.total);
-    A = side_by_side(4, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
     suspect(&why, code);
-    deliver(7, qdd, qdd_out);
+    deliver(NJ, qdd, qdd_out);
 }
 
 INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real M[16] = {0}, Z[4] = {0}, H[16] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     dynamics_run(m, X, V, M, Z, H, &why);
     if (!is_finite(why.total[0])) {
-        check(16, 1, M, why.overflow);
-        check(4, 1, Z, why.overflow);
-        check(16, 1, H, why.overflow);
+        check(NV*NV, 1, M, why.overflow);
+        check(NV, 1, Z, why.overflow);
+        check(NV*NU, 1, H, why.overflow);
     }
     judge(&why, code);
-    copy(16, M, M_out);
-    copy(4, Z, Z_out);
-    copy(16, H, H_out);
+    copy(NV*NV, M, M_out);
+    copy(NV, Z, Z_out);
+    copy(NV*NU, H, H_out);
     if (*code != OK) {
-        refuse(16, M_out);
-        refuse(4, Z_out);
-        refuse(16, H_out);
+        refuse(NV*NV, M_out);
+        refuse(NV, Z_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[4*LANES], V_in[4*LANES], M[16*LANES], Z[4*LANES], H[16*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(4, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     suspect(&why, code);
-    deliver(16, M, M_out);
-    deliver(4, Z, Z_out);
-    deliver(16, H, H_out);
+    deliver(NV*NV, M, M_out);
+    deliver(NV, Z, Z_out);
+    deliver(NV*NU, H, H_out);
 }
 
-INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
+INLINE void eliminate_4(size_t w, size_t stride, const size_t *order, const real *sizes, const
+    real *a, const real *b, real *x, real *unsure, real *total)
 {
     for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(3*stride + 0)*w + k];
-        real a01 = a[(3*stride + 1)*w + k];
-        real a02 = a[(3*stride + 2)*w + k];
-        real a03 = a[(3*stride + 3)*w + k];
-        real b0 = b[3*w + k];
-        real a10 = a[(1*stride + 0)*w + k];
-        real a11 = a[(1*stride + 1)*w + k];
-        real a12 = a[(1*stride + 2)*w + k];
-        real a13 = a[(1*stride + 3)*w + k];
-        real b1 = b[1*w + k];
-        real a20 = a[(2*stride + 0)*w + k];
-        real a21 = a[(2*stride + 1)*w + k];
-        real a22 = a[(2*stride + 2)*w + k];
-        real a23 = a[(2*stride + 3)*w + k];
-        real b2 = b[2*w + k];
-        real a30 = a[(0)*w + k];
-        real a31 = a[(1)*w + k];
-        real a32 = a[(2)*w + k];
-        real a33 = a[(3)*w + k];
-        real b3 = b[0*w + k];
+        real a00 = a[(order[0]*stride + 0)*w + k];
+        real a01 = a[(order[0]*stride + 1)*w + k];
+        real a02 = a[(order[0]*stride + 2)*w + k];
+        real a03 = a[(order[0]*stride + 3)*w + k];
+        real b0 = b[order[0]*w + k];
+        real a10 = a[(order[1]*stride + 0)*w + k];
+        real a11 = a[(order[1]*stride + 1)*w + k];
+        real a12 = a[(order[1]*stride + 2)*w + k];
+        real a13 = a[(order[1]*stride + 3)*w + k];
+        real b1 = b[order[1]*w + k];
+        real a20 = a[(order[2]*stride + 0)*w + k];
+        real a21 = a[(order[2]*stride + 1)*w + k];
+        real a22 = a[(order[2]*stride + 2)*w + k];
+        real a23 = a[(order[2]*stride + 3)*w + k];
+        real b2 = b[order[2]*w + k];
+        real a30 = a[(order[3]*stride + 0)*w + k];
+        real a31 = a[(order[3]*stride + 1)*w + k];
+        real a32 = a[(order[3]*stride + 2)*w + k];
+        real a33 = a[(order[3]*stride + 3)*w + k];
+        real b3 = b[order[3]*w + k];
         const real f0 = 1/a00;
         const real d1 = a00*a11 - a10*a01;
         const real f1 = a00/d1;
@@ -6054,8 +6093,8 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         const real f3 = a22/d3;
         const real g32 = a32*f2;
         b3 -= g32*b2;
-        const real x3 = (b3)*f3;
-        const real x2 = (b2)*f2 - a23*f2*x3;
+        const real x3 = b3*f3;
+        const real x2 = b2*f2 - a23*f2*x3;
         const real x1 = (b1 - a13*x3)*f1 - a12*f1*x2;
         const real x0 = (b0 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
         x[0*w + k] = x0;
@@ -6063,292 +6102,225 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         x[2*w + k] = x2;
         x[3*w + k] = x3;
         total[k] += (x0 + x1) + (x2 + x3);
-        const real most0 = magnitude(g21);
-        const real most1 = magnitude(g20);
-        const real most2 = magnitude(g31);
-        const real most3 = larger(magnitude(g10), magnitude(g30));
-        const real most4 = magnitude(g32);
-        const real most5 = larger(magnitude(f1), magnitude(f3));
-        const real most6 = magnitude(f0);
-        const real most7 = magnitude(f2);
-        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(2.5)) + UNLESS(most2 <= R(10))
-            + UNLESS(most3 <= R(40)) + UNLESS(most4 <= R(160)) + UNLESS(most5 <= R(250)) +
-            UNLESS(most6 <= R(1000)) + UNLESS(most7 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22
-            + d3));
+        const real most0 = larger(magnitude(g10)*(sizes[0]/sizes[1]),
+            larger(magnitude(g20)*(sizes[0]/sizes[2]), magnitude(g30)*(sizes[0]/sizes[3])));
+        const real most1 = larger(magnitude(g21)*(sizes[1]/sizes[2]),
+            magnitude(g31)*(sizes[1]/sizes[3]));
+        const real most2 = magnitude(g32)*(sizes[2]/sizes[3]);
+        unsure[k] += UNLESS(larger(larger(magnitude(f0)*sizes[0], magnitude(f1)*sizes[1]),
+            larger(magnitude(f2)*sizes[2], magnitude(f3)*sizes[3])) <= R(1000));
+        unsure[k] += UNLESS(larger(most0, larger(most1, most2)) <= R(10));
+        unsure[k] += UNLESS(is_finite(a00 + d1 + a22 + d3));
     }
 }
 
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real wrench_in[3], required[4] = {0}, H[16] = {0}, extend_1[4] = {0}, subtract_2[4] = {0},
-        unsure_5[1] = {0}, work[32];
+    static const size_t order_tau[] = {3, 1, 2, 0};
+    static const real sizes_tau[] = {1.0, 4.0, 0.25, 4.0};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0},
+        unsure_tau[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4) + total(A, 4);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
-        check(4, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 4; ++i) {
-        extend_1[i] = i < 3 ? wrench[i] : 0;
+        extend_1[i] = i < NW ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 4; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(1, 4, H, subtract_2, tau_out, unsure_5, why.total);
-    if (unsure_5[0] > 0) {
-        set_matrix(4, 1, H, work);
-        solve_apart(4, subtract_2, work, tau_out, why.singular);
-        check(4, 1, tau_out, why.overflow);
+    eliminate_4(1, NV, order_tau, sizes_tau, H, subtract_1, tau_out, unsure_tau, why.total);
+    if (unsure_tau[0] > 0) {
+        set_matrix(NV, 1, H, work);
+        solve_apart(NV, subtract_1, work, tau_out, why.singular);
+        check(NV, 1, tau_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
-        check(4, 1, tau_out, why.overflow);
+        check(NU, 1, tau_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(4, tau_out);
+        refuse(NU, tau_out);
     }
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[4*LANES], V_in[4*LANES], A_in[4*LANES], wrench_in[3*LANES], required[4*LANES],
-        H[16*LANES], extend_1[4*LANES], subtract_2[4*LANES], tau[4*LANES];
+    static const size_t order_tau[] = {3, 1, 2, 0};
+    static const real sizes_tau[] = {1.0, 4.0, 0.25, 4.0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
+        H[NV*NU*LANES], extend_1[4*LANES], subtract_1[NV*LANES], tau[NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(4, V, V_in, why.total);
-    A = side_by_side(4, A, A_in, why.total);
-    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 4*LANES; ++i) {
-        extend_1[i] = i < 3*LANES ? wrench[i] : 0;
+        extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 4*LANES; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(LANES, 4, H, subtract_2, tau, why.singular, why.total);
+    eliminate_4(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
     suspect(&why, code);
-    deliver(4, tau, tau_out);
-}
-
-INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
-{
-    for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(0)*w + k];
-        real a01 = a[(1)*w + k];
-        real a02 = a[(2)*w + k];
-        real a03 = a[(3)*w + k];
-        real b0 = b[0*w + k];
-        real a10 = a[(1*stride + 0)*w + k];
-        real a11 = a[(1*stride + 1)*w + k];
-        real a12 = a[(1*stride + 2)*w + k];
-        real a13 = a[(1*stride + 3)*w + k];
-        real b1 = b[1*w + k];
-        real a20 = a[(2*stride + 0)*w + k];
-        real a21 = a[(2*stride + 1)*w + k];
-        real a22 = a[(2*stride + 2)*w + k];
-        real a23 = a[(2*stride + 3)*w + k];
-        real b2 = b[2*w + k];
-        real a30 = a[(3*stride + 0)*w + k];
-        real a31 = a[(3*stride + 1)*w + k];
-        real a32 = a[(3*stride + 2)*w + k];
-        real a33 = a[(3*stride + 3)*w + k];
-        real b3 = b[3*w + k];
-        const real f0 = 1/a00;
-        const real d1 = a00*a11 - a10*a01;
-        const real f1 = a00/d1;
-        const real g10 = a10*f0;
-        a12 -= g10*a02;
-        a13 -= g10*a03;
-        b1 -= g10*b0;
-        const real g20 = a20*f0;
-        a21 -= g20*a01;
-        a22 -= g20*a02;
-        a23 -= g20*a03;
-        b2 -= g20*b0;
-        const real g30 = a30*f0;
-        a31 -= g30*a01;
-        a32 -= g30*a02;
-        a33 -= g30*a03;
-        b3 -= g30*b0;
-        const real g21 = a21*f1;
-        a22 -= g21*a12;
-        a23 -= g21*a13;
-        b2 -= g21*b1;
-        const real g31 = a31*f1;
-        a32 -= g31*a12;
-        a33 -= g31*a13;
-        b3 -= g31*b1;
-        const real f2 = 1/a22;
-        const real d3 = a22*a33 - a32*a23;
-        const real f3 = a22/d3;
-        const real g32 = a32*f2;
-        b3 -= g32*b2;
-        const real x3 = (b3)*f3;
-        const real x2 = (b2)*f2 - a23*f2*x3;
-        const real x1 = (b1 - a13*x3)*f1 - a12*f1*x2;
-        const real x0 = (b0 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
-        x[0*w + k] = x0;
-        x[1*w + k] = x1;
-        x[2*w + k] = x2;
-        x[3*w + k] = x3;
-        total[k] += (x0 + x1) + (x2 + x3);
-        const real most0 = larger(magnitude(g20), magnitude(g21));
-        const real most1 = larger(magnitude(g10), larger(magnitude(g30), magnitude(g31)));
-        const real most2 = magnitude(g32);
-        const real most3 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f3)));
-        const real most4 = magnitude(f2);
-        unsure[k] += UNLESS(most0 <= R(0.625)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(160))
-            + UNLESS(most3 <= R(250)) + UNLESS(most4 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22
-            + d3));
-    }
+    deliver(NU, tau, tau_out);
 }
 
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, int *code)
 {
-    real wrench_in[3], M[16] = {0}, Z[4] = {0}, H[16] = {0}, times_1[4] = {0}, extend_2[4] = {0},
-        add_3[4] = {0}, subtract_4[4] = {0}, unsure_8[1] = {0}, work[32];
+    static const size_t order_A[] = {0, 1, 2, 3};
+    static const real sizes_A[] = {4.0, 4.0, 0.25, 4.0};
+    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[4] =
+        {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4) + total(tau, 4);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
-        check(4, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
-    product(4, 4, 1, 1, H, tau, times_1);
+    product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < 4; ++i) {
-        extend_2[i] = i < 3 ? wrench[i] : 0;
+        extend_1[i] = i < NW ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 4; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    for (size_t i = 0; i < NV; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 4; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    eliminate_1(1, 4, M, subtract_4, A_out, unsure_8, why.total);
-    if (unsure_8[0] > 0) {
-        set_matrix(4, 1, M, work);
-        solve_apart(4, subtract_4, work, A_out, why.singular);
-        check(4, 1, A_out, why.overflow);
+    eliminate_4(1, NV, order_A, sizes_A, M, subtract_1, A_out, unsure_A, why.total);
+    if (unsure_A[0] > 0) {
+        set_matrix(NV, 1, M, work);
+        solve_apart(NV, subtract_1, work, A_out, why.singular);
+        check(NV, 1, A_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
-        check(4, 1, A_out, why.overflow);
+        check(NV, 1, A_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(4, A_out);
+        refuse(NV, A_out);
     }
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[4*LANES], V_in[4*LANES], tau_in[4*LANES], wrench_in[3*LANES], M[16*LANES], Z[4*LANES],
-        H[16*LANES], times_1[4*LANES] = {0}, extend_2[4*LANES], add_3[4*LANES], subtract_4[4*LANES],
-        A[4*LANES];
+    static const size_t order_A[] = {0, 1, 2, 3};
+    static const real sizes_A[] = {4.0, 4.0, 0.25, 4.0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
+        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, extend_1[4*LANES], add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(4, V, V_in, why.total);
-    tau = side_by_side(4, tau, tau_in, why.total);
-    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    product(4, 4, 1, LANES, H, tau, times_1);
+    product(NV, NU, 1, LANES, H, tau, times_1);
     for (size_t i = 0; i < 4*LANES; ++i) {
-        extend_2[i] = i < 3*LANES ? wrench[i] : 0;
+        extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 4*LANES; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 4*LANES; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    eliminate_1(LANES, 4, M, subtract_4, A, why.singular, why.total);
+    eliminate_4(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
     suspect(&why, code);
-    deliver(4, A, A_out);
+    deliver(NV, A, A_out);
 }
 
 INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(4, 1, A, why.invalid);
+    check(NV, 1, A, why.invalid);
     const real *const completed = A;
-    check(4, 1, completed, why.overflow);
+    check(NV, 1, completed, why.overflow);
     judge(&why, code);
-    copy(4, completed, completed_out);
+    copy(NV, completed, completed_out);
     if (*code != OK) {
-        refuse(4, completed_out);
+        refuse(NV, completed_out);
     }
 }
 
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t places_0[] = {0, 0, 1, 2};
-    real wrench_in[3], required[4] = {0}, H[16] = {0}, extend_1[4] = {0}, subtract_2[4] = {0},
-        solve_3[4] = {0}, unsure_6[1] = {0}, leg_force[9] = {0}, drive[12] = {0}, forces[9] = {0},
-        work[32];
+    static const size_t order_solve_1[] = {3, 1, 2, 0};
+    static const real sizes_solve_1[] = {1.0, 4.0, 0.25, 4.0};
+    static const size_t places_forces[] = {0, 0, 1, 2};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0},
+        solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[12] = {0},
+        forces[NL*NL] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4) + total(A, 4);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
-        check(4, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 4; ++i) {
-        extend_1[i] = i < 3 ? wrench[i] : 0;
+        extend_1[i] = i < NW ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 4; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(1, 4, H, subtract_2, solve_3, unsure_6, why.total);
-    if (unsure_6[0] > 0) {
-        set_matrix(4, 1, H, work);
-        solve_apart(4, subtract_2, work, solve_3, why.singular);
-        check(4, 1, solve_3, why.overflow);
+    eliminate_4(1, NV, order_solve_1, sizes_solve_1, H, subtract_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NV, 1, H, work);
+        solve_apart(NV, subtract_1, work, solve_1, why.singular);
+        check(NV, 1, solve_1, why.overflow);
     }
-    legs_run(m, X, V, A, leg_force, drive, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    legs_run(m, X, V, A, leg_force, actuator, &why);
+    for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
-    add_forces(4, 3, 1, places_0, solve_3, drive, forces);
-    check(9, 1, forces, why.overflow);
+    add_forces(NV, 3, 1, places_forces, solve_1, actuator, forces);
+    check(NL*NL, 1, forces, why.overflow);
     judge(&why, code);
-    copy(9, forces, forces_out);
+    copy(NL*NL, forces, forces_out);
     if (*code != OK) {
-        refuse(9, forces_out);
+        refuse(NL*NL, forces_out);
     }
 }
 
 INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
-    real M[16] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
-    half_form(4, 1, V, M, kinetic);
+    half_form(NV, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
@@ -6364,12 +6336,12 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
 INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
-    static const size_t places_0[] = {2};
-    real length_in[1], H[16] = {0}, lengths[2] = {0}, legs[3] = {0}, reach[3] = {0},
-        choose_length_1[1] = {0}, divide_rows_2[16] = {0}, sigma[4] = {0};
+    static const size_t places_divide_rows_1[] = {2};
+    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -6377,77 +6349,76 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 16; ++i) {
-        divide_rows_2[i] = H[i];
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
     }
-    divide_rows(1, 4, 1, places_0, choose_length_1, divide_rows_2);
-    singular_values(4, 4, divide_rows_2, sigma);
+    divide_rows(1, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(3, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(4, 1, sigma, why.overflow);
+    check(NV, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(4, sigma, sigma_out);
-    copy(3, legs, legs_out);
+    copy(NV, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(4, sigma_out);
-        refuse(3, legs_out);
+        refuse(NV, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 1, 3, 5};
-    static const size_t places_1[] = {1, 2, 3};
-    real q[7] = {0}, take_1[4] = {0}, subtract_2[4] = {0}, gap[4] = {0};
+    static const size_t places_gap[] = {1, 2, 3};
+    real q[NJ] = {0}, take_1[4] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(q_actuated, 4);
+    const real total_in = total(X, NQ) + total(q_actuated, NU);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, q_actuated, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(4, 1, places_0, q, take_1);
-    for (size_t i = 0; i < 4; ++i) {
-        subtract_2[i] = q_actuated[i] - take_1[i];
+    take(4, 1, planar_redundant_ACTUATED, q, take_1);
+    for (size_t i = 0; i < NU; ++i) {
+        subtract_1[i] = q_actuated[i] - take_1[i];
     }
-    for (size_t i = 0; i < 4; ++i) {
-        gap[i] = subtract_2[i];
+    for (size_t i = 0; i < NU; ++i) {
+        gap[i] = subtract_1[i];
     }
-    wrap_turns(3, 1, places_1, gap);
-    check(4, 1, gap, why.overflow);
+    wrap_turns(3, 1, places_gap, gap);
+    check(NU, 1, gap, why.overflow);
     judge(&why, code);
-    copy(4, gap, gap_out);
+    copy(NU, gap, gap_out);
     if (*code != OK) {
-        refuse(4, gap_out);
+        refuse(NU, gap_out);
     }
 }
 
 static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real slope[16] = {0};
+    real slope[NV*NU] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, slope, &why);
     if (!is_finite(why.total[0])) {
-        check(16, 1, slope, why.overflow);
+        check(NV*NU, 1, slope, why.overflow);
     }
     judge(&why, code);
-    copy(16, slope, slope_out);
+    copy(NV*NU, slope, slope_out);
     if (*code != OK) {
-        refuse(16, slope_out);
+        refuse(NV*NU, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
-    enum { N = 4, NV = 4, TRIALS = 12 };
+    enum { N = NU, TRIALS = 12 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[4] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     mismatch_one(m, found, q_actuated, gap, &code);
@@ -6490,30 +6461,30 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
-    real X[4] = {0};
+    real X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(q_actuated, 4) + total(X0, 4);
+    const real total_in = total(q_actuated, NU) + total(X0, NQ);
     if (!is_finite(total_in)) {
-        check(4, 1, q_actuated, why.invalid);
-        check(4, 1, X0, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
+        check(NQ, 1, X0, why.invalid);
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(4, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(4, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(4, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
-    real subtract_1[4] = {0};
+    real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, V, why.invalid);
-    for (size_t i = 0; i < 4; ++i) {
+    check(NV, 1, V, why.invalid);
+    for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
@@ -6528,85 +6499,85 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
     *code)
 {
-    real M[16] = {0}, momentum[4] = {0};
+    real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
-    product(4, 4, 1, 1, M, V, momentum);
-    check(4, 1, momentum, why.overflow);
+    product(NV, NV, 1, 1, M, V, momentum);
+    check(NV, 1, momentum, why.overflow);
     judge(&why, code);
-    copy(4, momentum, momentum_out);
+    copy(NV, momentum, momentum_out);
     if (*code != OK) {
-        refuse(4, momentum_out);
+        refuse(NV, momentum_out);
     }
 }
 
 INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
     int *code)
 {
-    real X_in[4*LANES], V_in[4*LANES], M[16*LANES], momentum[4*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(4, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     M_run_lanes(m, X, M, &why);
-    product(4, 4, 1, LANES, M, V, momentum);
-    add_up(4, momentum, why.total);
+    product(NV, NV, 1, LANES, M, V, momentum);
+    add_up(NV, momentum, why.total);
     suspect(&why, code);
-    deliver(4, momentum, momentum_out);
+    deliver(NV, momentum, momentum_out);
 }
 
 INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6};
-    real q[7] = {0}, margins[7] = {0};
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6};
+    real q[NJ] = {0}, margins[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 7; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
-    unlimited(7, 7, 1, places_0, margins, why.overflow);
+    unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     judge(&why, code);
-    copy(7, margins, margins_out);
+    copy(NJ, margins, margins_out);
     if (*code != OK) {
-        refuse(7, margins_out);
+        refuse(NJ, margins_out);
     }
 }
 
 INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6};
-    real X_in[4*LANES], q[7*LANES], margins[7*LANES];
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6};
+    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 7*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         margins[i] = q[i];
     }
-    unlimited(7, 7, LANES, places_0, margins, why.invalid);
+    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
     suspect(&why, code);
-    deliver(7, margins, margins_out);
+    deliver(NJ, margins, margins_out);
 }
 
 INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real q[7] = {0}, subtract_1[7] = {0}, within[1] = {0};
+    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 7; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(7, 1, subtract_1, within, why.overflow);
+    not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     judge(&why, code);
     copy(1, within, within_out);
@@ -6617,15 +6588,15 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
 
 INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real X_in[4*LANES], q[7*LANES], subtract_1[7*LANES], within[1*LANES] = {0};
+    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 7*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(7, LANES, subtract_1, within, why.invalid);
+    not_negative(NJ, LANES, subtract_1, within, why.invalid);
     add_up(1, within, why.total);
     suspect(&why, code);
     deliver(1, within, within_out);
@@ -6633,129 +6604,123 @@ INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_o
 
 INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 3, 5};
-    real q_of_inverse_kinematics[7] = {0}, q[4] = {0};
+    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
-    take(4, 1, places_0, q_of_inverse_kinematics, q);
-    check(4, 1, q, why.overflow);
+    take(NU, 1, planar_redundant_ACTUATED, q_of_inverse_kinematics, q);
+    check(NU, 1, q, why.overflow);
     judge(&why, code);
-    copy(4, q, q_out);
+    copy(NU, q, q_out);
     if (*code != OK) {
-        refuse(4, q_out);
+        refuse(NU, q_out);
     }
 }
 
 INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 3, 5};
-    real X_in[4*LANES], q_of_inverse_kinematics[7*LANES], q[4*LANES] = {0};
+    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(4, 1*LANES, places_0, q_of_inverse_kinematics, q);
-    add_up(4, q, why.total);
+    take(NU, LANES, planar_redundant_ACTUATED, q_of_inverse_kinematics, q);
+    add_up(NU, q, why.total);
     suspect(&why, code);
-    deliver(4, q, q_out);
+    deliver(NU, q, q_out);
 }
 
 INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    static const size_t places_0[] = {0, 1, 3, 5};
-    real qd_of_joint_rates[7] = {0}, qd[4] = {0};
+    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
-    take(4, 1, places_0, qd_of_joint_rates, qd);
-    check(4, 1, qd, why.overflow);
+    take(NU, 1, planar_redundant_ACTUATED, qd_of_joint_rates, qd);
+    check(NU, 1, qd, why.overflow);
     judge(&why, code);
-    copy(4, qd, qd_out);
+    copy(NU, qd, qd_out);
     if (*code != OK) {
-        refuse(4, qd_out);
+        refuse(NU, qd_out);
     }
 }
 
 INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 1, 3, 5};
-    real X_in[4*LANES], V_in[4*LANES], qd_of_joint_rates[7*LANES], qd[4*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(4, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(4, 1*LANES, places_0, qd_of_joint_rates, qd);
-    add_up(4, qd, why.total);
+    take(NU, LANES, planar_redundant_ACTUATED, qd_of_joint_rates, qd);
+    add_up(NU, qd, why.total);
     suspect(&why, code);
-    deliver(4, qd, qd_out);
+    deliver(NU, qd, qd_out);
 }
 
 INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 3, 5};
-    real qdd_of_joint_accelerations[7] = {0}, qdd[4] = {0};
+    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4) + total(A, 4);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
-        check(4, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(4, 1, places_0, qdd_of_joint_accelerations, qdd);
-    check(4, 1, qdd, why.overflow);
+    take(NU, 1, planar_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
+    check(NU, 1, qdd, why.overflow);
     judge(&why, code);
-    copy(4, qdd, qdd_out);
+    copy(NU, qdd, qdd_out);
     if (*code != OK) {
-        refuse(4, qdd_out);
+        refuse(NU, qdd_out);
     }
 }
 
 INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 3, 5};
-    real X_in[4*LANES], V_in[4*LANES], A_in[4*LANES], qdd_of_joint_accelerations[7*LANES],
-        qdd[4*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
+        qdd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(4, V, V_in, why.total);
-    A = side_by_side(4, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(4, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
-    add_up(4, qdd, why.total);
+    take(NU, LANES, planar_redundant_ACTUATED, qdd_of_joint_accelerations, qdd);
+    add_up(NU, qdd, why.total);
     suspect(&why, code);
-    deliver(4, qdd, qdd_out);
+    deliver(NU, qdd, qdd_out);
 }
 
 INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real H[16] = {0}, times_1[4] = {0}, power[1] = {0};
+    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4) + total(tau, 4);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
-        check(4, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
     H_run(m, X, H, &why);
-    product(4, 4, 1, 1, H, tau, times_1);
-    inner(4, 1, times_1, V, power);
+    product(NV, NU, 1, 1, H, tau, times_1);
+    inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     judge(&why, code);
     copy(1, power, power_out);
@@ -6767,16 +6732,16 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
 INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real X_in[4*LANES], V_in[4*LANES], tau_in[4*LANES], H[16*LANES], times_1[4*LANES] = {0},
-        power[1*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        power[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(4, V, V_in, why.total);
-    tau = side_by_side(4, tau, tau_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
     H_run_lanes(m, X, H, &why);
-    product(4, 4, 1, LANES, H, tau, times_1);
-    inner(4, LANES, times_1, V, power);
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    inner(NV, LANES, times_1, V, power);
     add_up(1, power, why.total);
     suspect(&why, code);
     deliver(1, power, power_out);
@@ -6787,7 +6752,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     real R[4] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     const real *const take_1 = X + 2;
     rotation_of_angle(take_1, R);
     check(4, 1, R, why.overflow);
@@ -6800,7 +6765,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
 
 INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
-    real angle_of_rotation_1[1] = {0}, join_2[3] = {0}, X[4] = {0};
+    real angle_of_rotation_1[1] = {0}, join_1[3] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 2) + total(R, 4);
@@ -6809,15 +6774,15 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
         check(4, 1, R, why.invalid);
     }
     angle_of_rotation(R, angle_of_rotation_1);
-    beside(1, 2, 1, t, angle_of_rotation_1, join_2);
-    for (size_t i = 0; i < 4; ++i) {
-        X[i] = i < 3 ? join_2[i] : 0;
+    beside(1, 2, 1, t, angle_of_rotation_1, join_1);
+    for (size_t i = 0; i < NQ; ++i) {
+        X[i] = i < 3 ? join_1[i] : 0;
     }
-    check(4, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(4, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(4, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -6825,97 +6790,97 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 4);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     const real *const X_dot = V;
-    check(4, 1, X_dot, why.overflow);
+    check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
-    copy(4, X_dot, X_dot_out);
+    copy(NQ, X_dot, X_dot_out);
     if (*code != OK) {
-        refuse(4, X_dot_out);
+        refuse(NQ, X_dot_out);
     }
 }
 
 INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
-    real X_moved[4] = {0};
+    real X_moved[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(step, 4);
+    const real total_in = total(X, NQ) + total(step, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(4, 1, step, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, step, why.invalid);
     }
-    for (size_t i = 0; i < 4; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         X_moved[i] = X[i] + step[i];
     }
-    check(4, 1, X_moved, why.overflow);
+    check(NQ, 1, X_moved, why.overflow);
     judge(&why, code);
-    copy(4, X_moved, X_moved_out);
+    copy(NQ, X_moved, X_moved_out);
     if (*code != OK) {
-        refuse(4, X_moved_out);
+        refuse(NQ, X_moved_out);
     }
 }
 
 INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
-    static const size_t places_0[] = {2};
-    real subtract_1[4] = {0}, step[4] = {0};
+    static const size_t places_step[] = {2};
+    real subtract_1[NQ] = {0}, step[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 4) + total(X1, 4);
+    const real total_in = total(X0, NQ) + total(X1, NQ);
     if (!is_finite(total_in)) {
-        check(4, 1, X0, why.invalid);
-        check(4, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
     }
-    for (size_t i = 0; i < 4; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
-    for (size_t i = 0; i < 4; ++i) {
+    for (size_t i = 0; i < NV; ++i) {
         step[i] = subtract_1[i];
     }
-    wrap_turns(1, 1, places_0, step);
-    check(4, 1, step, why.overflow);
+    wrap_turns(1, 1, places_step, step);
+    check(NV, 1, step, why.overflow);
     judge(&why, code);
-    copy(4, step, step_out);
+    copy(NV, step, step_out);
     if (*code != OK) {
-        refuse(4, step_out);
+        refuse(NV, step_out);
     }
 }
 
 INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    static const size_t places_0[] = {2};
-    real subtract_1[4] = {0}, wrap_turns_2[4] = {0}, scale_3[4] = {0}, X[4] = {0};
+    static const size_t places_wrap_turns_1[] = {2};
+    real subtract_1[NQ] = {0}, wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 4) + total(X1, 4) + total(s, 1);
+    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
     if (!is_finite(total_in)) {
-        check(4, 1, X0, why.invalid);
-        check(4, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    for (size_t i = 0; i < 4; ++i) {
+    for (size_t i = 0; i < NQ; ++i) {
         subtract_1[i] = X1[i] - X0[i];
     }
-    for (size_t i = 0; i < 4; ++i) {
-        wrap_turns_2[i] = subtract_1[i];
+    for (size_t i = 0; i < NQ; ++i) {
+        wrap_turns_1[i] = subtract_1[i];
     }
-    wrap_turns(1, 1, places_0, wrap_turns_2);
-    for (size_t i = 0; i < 4; ++i) {
-        scale_3[i] = wrap_turns_2[i]*s[i%(1)];
+    wrap_turns(1, 1, places_wrap_turns_1, wrap_turns_1);
+    for (size_t i = 0; i < NQ; ++i) {
+        scale_1[i] = wrap_turns_1[i]*s[i%(1)];
     }
-    for (size_t i = 0; i < 4; ++i) {
-        X[i] = X0[i] + scale_3[i];
+    for (size_t i = 0; i < NQ; ++i) {
+        X[i] = X0[i] + scale_1[i];
     }
-    check(4, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(4, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(4, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -6935,16 +6900,16 @@ size_t planar_redundant_M_batch(const planar_redundant_model *model, size_t n, c
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_lanes(model, X + 4*i, M + 16*i, codes);
+        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_M(model, X + 4*(i + k), M + 16*(i + k));
+                codes[k] = planar_redundant_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_M(model, X + 4*i, M + 16*i);
+        const int code = planar_redundant_M(model, X + NQ*i, M + NV*NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6965,16 +6930,16 @@ size_t planar_redundant_Z_batch(const planar_redundant_model *model, size_t n, c
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_lanes(model, X + 4*i, V + 4*i, Z + 4*i, codes);
+        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_Z(model, X + 4*(i + k), V + 4*(i + k), Z + 4*(i + k));
+                codes[k] = planar_redundant_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_Z(model, X + 4*i, V + 4*i, Z + 4*i);
+        const int code = planar_redundant_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6994,16 +6959,16 @@ size_t planar_redundant_H_batch(const planar_redundant_model *model, size_t n, c
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_lanes(model, X + 4*i, H + 16*i, codes);
+        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_H(model, X + 4*(i + k), H + 16*(i + k));
+                codes[k] = planar_redundant_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_H(model, X + 4*i, H + 16*i);
+        const int code = planar_redundant_H(model, X + NQ*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7023,16 +6988,16 @@ size_t planar_redundant_inverse_kinematics_batch(const planar_redundant_model *m
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_lanes(model, X + 4*i, q + 7*i, codes);
+        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_inverse_kinematics(model, X + 4*(i + k), q + 7*(i + k));
+                codes[k] = planar_redundant_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_inverse_kinematics(model, X + 4*i, q + 7*i);
+        const int code = planar_redundant_inverse_kinematics(model, X + NQ*i, q + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7053,16 +7018,17 @@ size_t planar_redundant_joint_rates_batch(const planar_redundant_model *model, s
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_lanes(model, X + 4*i, V + 4*i, rates + 7*i, codes);
+        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_joint_rates(model, X + 4*(i + k), V + 4*(i + k), rates + 7*(i + k));
+                codes[k] = planar_redundant_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i +
+                    k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_joint_rates(model, X + 4*i, V + 4*i, rates + 7*i);
+        const int code = planar_redundant_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7084,18 +7050,18 @@ size_t planar_redundant_joint_accelerations_batch(const planar_redundant_model *
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_lanes(model, X + 4*i, V + 4*i, A + 4*i, accelerations + 7*i, codes);
+        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_joint_accelerations(model, X + 4*(i + k), V + 4*(i + k), A + 4*(i +
-                    k), accelerations + 7*(i + k));
+                codes[k] = planar_redundant_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
+                    k), accelerations + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_joint_accelerations(model, X + 4*i, V + 4*i, A + 4*i,
-            accelerations + 7*i);
+        const int code = planar_redundant_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7117,17 +7083,18 @@ size_t planar_redundant_dynamics_batch(const planar_redundant_model *model, size
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_lanes(model, X + 4*i, V + 4*i, M + 16*i, Z + 4*i, H + 16*i, codes);
+        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_dynamics(model, X + 4*(i + k), V + 4*(i + k), M + 16*(i + k), Z + 4*(i
-                    + k), H + 16*(i + k));
+                codes[k] = planar_redundant_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
+                    NV*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_dynamics(model, X + 4*i, V + 4*i, M + 16*i, Z + 4*i, H + 16*i);
+        const int code = planar_redundant_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
+            NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7149,19 +7116,19 @@ size_t planar_redundant_inverse_dynamics_batch(const planar_redundant_model *mod
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_lanes(model, X + 4*i, V + 4*i, A + 4*i, wrench ? wrench + 3*i : NULL, tau + 4*i,
-            codes);
+        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+            NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_inverse_dynamics(model, X + 4*(i + k), V + 4*(i + k), A + 4*(i + k),
-                    wrench ? wrench + 3*(i + k) : NULL, tau + 4*(i + k));
+                codes[k] = planar_redundant_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
+                    k), wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_inverse_dynamics(model, X + 4*i, V + 4*i, A + 4*i, wrench ?
-            wrench + 3*i : NULL, tau + 4*i);
+        const int code = planar_redundant_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
+            wrench + NW*i : NULL, tau + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7183,19 +7150,19 @@ size_t planar_redundant_forward_dynamics_batch(const planar_redundant_model *mod
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_lanes(model, X + 4*i, V + 4*i, tau + 4*i, wrench ? wrench + 3*i : NULL, A + 4*i,
-            codes);
+        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+            NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_forward_dynamics(model, X + 4*(i + k), V + 4*(i + k), tau + 4*(i + k),
-                    wrench ? wrench + 3*(i + k) : NULL, A + 4*(i + k));
+                codes[k] = planar_redundant_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i +
+                    k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_forward_dynamics(model, X + 4*i, V + 4*i, tau + 4*i, wrench ?
-            wrench + 3*i : NULL, A + 4*i);
+        const int code = planar_redundant_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
+            wrench + NW*i : NULL, A + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7220,8 +7187,8 @@ size_t planar_redundant_complete_acceleration_batch(const planar_redundant_model
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_complete_acceleration(model, X + 4*i, V + 4*i, A + 4*i, wrench ?
-            wrench + 3*i : NULL, completed + 4*i);
+        const int code = planar_redundant_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i,
+            wrench ? wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7242,8 +7209,8 @@ size_t planar_redundant_leg_reactions_batch(const planar_redundant_model *model,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_leg_reactions(model, X + 4*i, V + 4*i, A + 4*i, wrench ? wrench
-            + 3*i : NULL, forces + 9*i);
+        const int code = planar_redundant_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
+            wrench + NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7264,7 +7231,7 @@ size_t planar_redundant_energy_batch(const planar_redundant_model *model, size_t
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_energy(model, X + 4*i, V + 4*i, kinetic + 1*i, potential + 1*i);
+        const int code = planar_redundant_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7284,7 +7251,7 @@ size_t planar_redundant_condition_batch(const planar_redundant_model *model, siz
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_condition(model, X + 4*i, sigma + 4*i, legs + 3*i);
+        const int code = planar_redundant_condition(model, X + NQ*i, sigma + 4*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7304,7 +7271,8 @@ size_t planar_redundant_forward_kinematics_batch(const planar_redundant_model *m
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_forward_kinematics(model, q_actuated + 4*i, X0 + 4*i, X + 4*i);
+        const int code = planar_redundant_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X +
+            NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7326,7 +7294,7 @@ size_t planar_redundant_dissipation_batch(const planar_redundant_model *model, s
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_dissipation(model, X + 4*i, V + 4*i, dissipation + 1*i);
+        const int code = planar_redundant_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7347,16 +7315,17 @@ size_t planar_redundant_momentum_batch(const planar_redundant_model *model, size
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_lanes(model, X + 4*i, V + 4*i, momentum + 4*i, codes);
+        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_momentum(model, X + 4*(i + k), V + 4*(i + k), momentum + 4*(i + k));
+                codes[k] = planar_redundant_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i +
+                    k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_momentum(model, X + 4*i, V + 4*i, momentum + 4*i);
+        const int code = planar_redundant_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7376,16 +7345,16 @@ size_t planar_redundant_joint_margins_batch(const planar_redundant_model *model,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_margins_lanes(model, X + 4*i, margins + 7*i, codes);
+        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_joint_margins(model, X + 4*(i + k), margins + 7*(i + k));
+                codes[k] = planar_redundant_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_joint_margins(model, X + 4*i, margins + 7*i);
+        const int code = planar_redundant_joint_margins(model, X + NQ*i, margins + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7405,16 +7374,16 @@ size_t planar_redundant_within_limits_batch(const planar_redundant_model *model,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        within_limits_lanes(model, X + 4*i, within + 1*i, codes);
+        within_limits_lanes(model, X + NQ*i, within + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_within_limits(model, X + 4*(i + k), within + 1*(i + k));
+                codes[k] = planar_redundant_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_within_limits(model, X + 4*i, within + 1*i);
+        const int code = planar_redundant_within_limits(model, X + NQ*i, within + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7434,16 +7403,16 @@ size_t planar_redundant_actuator_positions_batch(const planar_redundant_model *m
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_lanes(model, X + 4*i, q + 4*i, codes);
+        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_actuator_positions(model, X + 4*(i + k), q + 4*(i + k));
+                codes[k] = planar_redundant_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_actuator_positions(model, X + 4*i, q + 4*i);
+        const int code = planar_redundant_actuator_positions(model, X + NQ*i, q + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7464,17 +7433,17 @@ size_t planar_redundant_actuator_rates_batch(const planar_redundant_model *model
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_lanes(model, X + 4*i, V + 4*i, rates + 4*i, codes);
+        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_actuator_rates(model, X + 4*(i + k), V + 4*(i + k), rates + 4*(i +
+                codes[k] = planar_redundant_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i +
                     k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_actuator_rates(model, X + 4*i, V + 4*i, rates + 4*i);
+        const int code = planar_redundant_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7496,18 +7465,18 @@ size_t planar_redundant_actuator_accelerations_batch(const planar_redundant_mode
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_lanes(model, X + 4*i, V + 4*i, A + 4*i, accelerations + 4*i, codes);
+        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_actuator_accelerations(model, X + 4*(i + k), V + 4*(i + k), A + 4*(i +
-                    k), accelerations + 4*(i + k));
+                codes[k] = planar_redundant_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A +
+                    NV*(i + k), accelerations + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_actuator_accelerations(model, X + 4*i, V + 4*i, A + 4*i,
-            accelerations + 4*i);
+        const int code = planar_redundant_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7529,17 +7498,17 @@ size_t planar_redundant_power_batch(const planar_redundant_model *model, size_t 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_lanes(model, X + 4*i, V + 4*i, tau + 4*i, power + 1*i, codes);
+        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = planar_redundant_power(model, X + 4*(i + k), V + 4*(i + k), tau + 4*(i + k), power +
-                    1*(i + k));
+                codes[k] = planar_redundant_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power +
+                    (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = planar_redundant_power(model, X + 4*i, V + 4*i, tau + 4*i, power + 1*i);
+        const int code = planar_redundant_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7557,7 +7526,7 @@ size_t planar_redundant_rotation_batch(size_t n, const planar_redundant_real *X,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_rotation(X + 4*i, R + 4*i);
+        const int code = planar_redundant_rotation(X + NQ*i, R + 4*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7576,7 +7545,7 @@ size_t planar_redundant_pose_batch(size_t n, const planar_redundant_real *t, con
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_pose(t + 2*i, R + 4*i, X + 4*i);
+        const int code = planar_redundant_pose(t + 2*i, R + 4*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7595,7 +7564,7 @@ size_t planar_redundant_X_dot_batch(size_t n, const planar_redundant_real *X, co
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_X_dot(X + 4*i, V + 4*i, X_dot + 4*i);
+        const int code = planar_redundant_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7614,7 +7583,7 @@ size_t planar_redundant_retract_batch(size_t n, const planar_redundant_real *X, 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_retract(X + 4*i, step + 4*i, X_moved + 4*i);
+        const int code = planar_redundant_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7633,7 +7602,7 @@ size_t planar_redundant_difference_batch(size_t n, const planar_redundant_real *
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_difference(X0 + 4*i, X1 + 4*i, step + 4*i);
+        const int code = planar_redundant_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7653,7 +7622,7 @@ size_t planar_redundant_interpolate_batch(size_t n, const planar_redundant_real 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = planar_redundant_interpolate(X0 + 4*i, X1 + 4*i, s + 1*i, X + 4*i);
+        const int code = planar_redundant_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

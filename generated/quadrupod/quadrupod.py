@@ -99,7 +99,7 @@ _SHAPES = {  # of the arrays that functions give
     "qdd": (15,),
     "constraints": (3,),
     "leg_force": (5, 6),
-    "drive": (4, 6),
+    "actuator": (4, 6),
     "constraint_direction": (3, 6),
     "potential": (1,),
     "lengths": (2,),
@@ -177,7 +177,7 @@ _leg_force_ups = (
     [1, 7, 13, 19],
     [2, 8, 14, 20],
 )
-_drive_ups = (
+_actuator_ups = (
     [0, 6, 12, 18],
     [1, 7, 13, 19],
     [2, 8, 14, 20],
@@ -1271,50 +1271,41 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
+_BLOCK = 4096  # states
 _SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
-    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    """Prepared values of a function, and for each loop over legs (leg, its values): floats."""
     if name not in p._cache:
         shared, loops = p._prepared()[name]
-        rows, columns = [], []
+        rows = []
         for count, values in loops:
-            table = [np.broadcast_to(v, count) for v in values]
-            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
-            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
-        p._cache[name] = tuple(map(float, shared)), rows, columns
+            table = [np.broadcast_to(v, count).tolist() for v in values]
+            rows.append([(leg, tuple(v[leg] for v in table)) for leg in range(count)])
+        p._cache[name] = tuple(map(float, shared)), rows
     return p._cache[name]
-
-
-def _sqrt(x):
-    return x**0.5 if x >= 0.0 else np.nan
 
 
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
-    sqrt = staticmethod(_sqrt)
+    sqrt = staticmethod(math.sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda leg, good: good)
 
-    def __init__(self, p, states):
+    def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)[:2]
+        return _constants(self.p, name)
 
     def zeros(self, name):
         return [0.0] * math.prod(_SHAPES[name])
-
-    def added(self, sums, leg, terms):
-        """Sums over the legs so far."""
-        return [a + b for a, b in zip(sums, terms)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1326,7 +1317,7 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, ValueError):
             ok = False
         if ok and all(all(map(math.isfinite, array)) for array in arrays):
             return arrays
@@ -1334,54 +1325,66 @@ class _Floats:
 
 
 class _Arrays:
-    """Functions of many states at once: arrays (states,), and (legs, states)."""
+    """Functions of many states at once, in arrays (states,).
+
+    Attributes:
+        kept: replays, by their place among those of a block, for other blocks of the same size;
+            None where there are too few states for it to pay to record.
+    """
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
-    def __init__(self, p, states):
-        self.p, self.states = p, states
+    def __init__(self, p, states, kept=None):
+        self.p, self.states, self.kept, self.done = p, states, kept, 0
 
     def constants(self, name):
-        """Shared values, and (all legs, their values) once for each loop."""
-        shared, _, columns = _constants(self.p, name)
-        return shared, columns
+        """Shared values, and (leg, its values) for every leg of each loop.
+
+        As arrays without dimensions: beside arrays they are faster than floats.
+        """
+        if (name, "arrays") not in self.p._cache:
+            shared, loops = _constants(self.p, name)
+            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
+            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
+        return self.p._cache[name, "arrays"]
 
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, legs, good):
-        """Whether it holds for all legs."""
-        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
-
-    def added(self, sums, legs, terms):
-        """Sums over the legs, all at once."""
-        shape = (legs.stop, self.states)
-        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+    def computed(self, function, names, vectors):
+        """Flags and arrays (*shape, states) of a function."""
+        if self.kept is None:
+            flags, arrays = function(self, *vectors)
+        else:
+            if self.done not in self.kept:
+                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+            flags, arrays = self.kept[self.done].run(vectors)
+            self.done += 1
+        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = function(self, *vectors)
-        for a in arrays:
-            ok = ok & np.isfinite(a).all(axis=0)
+        ok, arrays = self.computed(function, names, vectors)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
-                a[:, ~ok] = np.nan
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+                a[..., ~ok] = np.nan
+        return arrays
 
 
 class _Judged(_Arrays):
     """The same, and why a state is impossible."""
 
-    def __init__(self, p, states):
-        super().__init__(p, states)
+    def __init__(self, p, states, kept=None):
+        super().__init__(p, states, kept)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = function(self, *vectors)
+        (valid, reached, clear), arrays = self.computed(function, names, vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            self.failed[code] |= np.logical_not(good)
+        return arrays
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1393,9 +1396,9 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _mode(p, states):
+def _mode(p, states, kept=None):
     """The faster way for so many states."""
-    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
@@ -1428,26 +1431,27 @@ def _one(steps, p, given, shapes, read, unbounded):
 
 
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
-    """Results at many states, block by block."""
+    """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
+    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
-    if count > _BLOCK:
+    if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
         # of intermediate arrays from block to block instead of giving its pages back.
         np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
-        for first in range(0, max(count, 1), _BLOCK):
-            block = slice(first, min(first + _BLOCK, count))
+        for stop in (*range(size, count, max(size, 1)), count):
+            block = slice(stop - size, stop)
             states = [_states_last(v[block]) for v in flat]
-            m, good = mode(p, block.stop - first), possible[block]
+            m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
-            _all_finite(compress(states, read), good)
+            good &= _finite(compress(states, read), size)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
+            good &= _finite([np.minimum(a, 0.0) for a in found] if unbounded else found, size)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1464,10 +1468,194 @@ def _states_last(a):
     return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
 
 
-def _all_finite(arrays, good):
-    """Clear the flags of states in which some entry is not finite."""
-    for a in arrays:
-        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+def _finite(arrays, states):
+    """In which states all entries of arrays (*shape, states) are finite."""
+    flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
+    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    if not np.all(good):  # or the sum is too large
+        good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
+    return good
+
+
+def _least(x, y, out):
+    return np.minimum(x, y, out=out)
+
+
+def _both(operation):
+    """An operation of recorded values, and the same with its operands the other way round."""
+    return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
+
+
+class _Recorded:
+    """A value of a function that runs to be recorded."""
+
+    def __init__(self, record, number):
+        self.record, self.number = record, number
+
+    __add__, __radd__ = _both(np.add)
+    __sub__, __rsub__ = _both(np.subtract)
+    __mul__, __rmul__ = _both(np.multiply)
+    __truediv__, __rtruediv__ = _both(np.divide)
+    __and__, __rand__ = _both(np.logical_and)
+    __gt__, __lt__ = _both(np.greater)
+    __ge__, __le__ = _both(np.greater_equal)
+
+    def __neg__(self):
+        return self.record.made(np.negative, self)
+
+    def __abs__(self):
+        return self.record.made(np.absolute, self)
+
+
+class _Record:
+    """The operations of a function, recorded by running it, and where their results stand.
+
+    Results share arrays: what is read for the last time makes room for the next, so that a few
+    arrays do, which stay in the processor's cache.
+
+    Attributes:
+        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
+        steps: (operation, numbers of its operands and of its result).
+        slots: number of a result -> (kind of array or "out", place).
+        counts: how many arrays there are of every kind.
+    """
+
+    def __init__(self, p, function, sizes):
+        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
+        self.constant, self.literals = [], {}
+        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
+        flags, arrays = function(self, *self.inputs)
+        self.is_judged = isinstance(flags, tuple)
+        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes = [len(array) for array in arrays]
+        for place, value in enumerate(v for array in arrays for v in array):
+            self.store(self.number(value), place)
+        self.counts = self.share()
+
+    # ---- the mode in which the function runs ----
+
+    def sqrt(self, x):
+        return self.made(np.sqrt, x)
+
+    def sin(self, x):
+        return self.made(np.sin, x)
+
+    def cos(self, x):
+        return self.made(np.cos, x)
+
+    def atan2(self, y, x):
+        return self.made(np.arctan2, y, x)
+
+    def least(self, x, y):
+        return self.made(_least, x, y)
+
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        self.name, (shared, loops) = name, _constants(self.p, name)
+        shared = self.named(shared)
+        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+
+    # ---- what is recorded ----
+
+    def named(self, values):
+        """Values for constants."""
+        found = [self.value("one") for _ in values]
+        self.constant += [v.number for v in found]
+        return found
+
+    def value(self, kind):
+        self.kinds.append(kind)
+        return _Recorded(self, len(self.kinds) - 1)
+
+    def number(self, value):
+        """Number of a value, which may be a literal."""
+        if isinstance(value, _Recorded):
+            return value.number
+        if value not in self.literals:
+            self.literals[value] = self.value("one").number
+        return self.literals[value]
+
+    def made(self, operation, *operands):
+        """The result of an operation."""
+        numbers = [self.number(operand) for operand in operands]
+        if all(self.kinds[n] == "one" for n in numbers):
+            kind = "one"
+        else:
+            kind = "flag" if operation in _OF_FLAGS else "state"
+        result = self.value(kind)
+        self.steps.append((operation, [*numbers, result.number]))
+        return result
+
+    def store(self, number, place):
+        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
+        if self.kinds[number] != "state" or number in self.slots:
+            copy = self.value("state").number
+            self.steps.append((np.positive, [number, copy]))
+            number = copy
+        self.slots[number] = "out", place
+
+    def share(self):
+        """Give results their places; how many there are of each kind."""
+        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
+        last.update(dict.fromkeys(self.flags, len(self.steps)))
+        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
+        for k, (_, (*operands, result)) in enumerate(self.steps):
+            for n in dict.fromkeys(operands):
+                kind, place = self.slots.get(n, ("given", 0))
+                if last[n] == k and kind in free:
+                    free[kind].append(place)
+            if result not in self.slots:
+                kind = self.kinds[result]
+                if not free[kind]:
+                    free[kind].append(counts[kind])
+                    counts[kind] += 1
+                self.slots[result] = kind, free[kind].pop()
+        return counts
+
+
+_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_RECORDS = {}  # by function
+
+
+class _Replay:
+    """A record on arrays of so many states, which are made once."""
+
+    def __init__(self, p, function, sizes, states):
+        if function not in _RECORDS:
+            _RECORDS[function] = _Record(p, function, sizes)
+        r = _RECORDS[function]
+        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
+        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
+        made["out"] = _rows(sum(r.sizes), states)
+        self.inputs = [_rows(size, states) for size in sizes]
+        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        at = {number: np.array(value) for value, number in r.literals.items()}
+        for values, given in zip(r.inputs, self.inputs):
+            at |= {v.number: row for v, row in zip(values, given)}
+        if r.name is not None:
+            shared, loops = _constants(p, r.name)
+            values = sum((k for legs in loops for _, k in legs), shared)
+            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
+        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
+        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
+        flags = [at[n] for n in r.flags]
+        self.flags = flags if r.is_judged else flags[0]
+
+    def run(self, vectors):
+        """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
+        for rows, vector in zip(self.inputs, vectors):
+            rows[:] = vector
+        for operation, operands in self.steps:
+            operation(*operands)
+        return self.flags, self.arrays
+
+
+def _rows(count, states, kind=float):
+    """Rows of so many states, a cache line apart from each other."""
+    return np.empty((count, states + 8), dtype=kind)[:, :states]
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1921,7 +2109,12 @@ def _run_dynamics(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 27
+    (
+    M_tt_ups_xx, M_tt_ups_xy, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_ups_xx,
+        M_ta_ups_xy, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yy, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy,
+        M_ta_ups_zz, M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
+        Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z,
+    ) = [0.0] * 27
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -2210,17 +2403,42 @@ def _run_dynamics(m, X, V):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
-            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
+            (abs(ups_root_2) > _TOLERANCE * 1.38293)
         )
-        sums = m.added(sums, leg, (
-        ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz, ups_Q_zz, ups_M_ta_t_3,
-            ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
-            ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
-            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_x, ups_U_y, ups_U_z,
-            ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
-        ))
+        # (M_tt) translational block of M
+        M_tt_ups_xx += ups_Q_xx
+        M_tt_ups_xy += ups_Q_xy
+        M_tt_ups_xz += ups_Q_xz
+        M_tt_ups_yy += ups_Q_yy
+        M_tt_ups_yz += ups_Q_yz
+        M_tt_ups_zz += ups_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_ups_xx += ups_M_ta_t_3
+        M_ta_ups_xy += ups_M_ta_t_4
+        M_ta_ups_xz += ups_M_ta_t_5
+        M_ta_ups_yx += ups_M_ta_t_6
+        M_ta_ups_yy += ups_M_ta_t_8
+        M_ta_ups_yz += ups_M_ta_t_9
+        M_ta_ups_zx += ups_M_ta_t_10
+        M_ta_ups_zy += ups_M_ta_t_11
+        M_ta_ups_zz += ups_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_ups_xx += ups_M_aa_t
+        M_aa_ups_xy += ups_M_aa_t_2
+        M_aa_ups_xz += ups_M_aa_t_3
+        M_aa_ups_yy += ups_M_aa_t_4
+        M_aa_ups_yz += ups_M_aa_t_5
+        M_aa_ups_zz += ups_M_aa_t_6
+        # (Z_t) translational part of Z
+        Z_t_ups_x += ups_U_x
+        Z_t_ups_y += ups_U_y
+        Z_t_ups_z += ups_U_z
+        # (Z_a) rotational part of Z
+        Z_a_ups_x += ups_Z_a_t
+        Z_a_ups_y += ups_Z_a_t_2
+        Z_a_ups_z += ups_Z_a_t_3
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
         out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
@@ -2230,12 +2448,12 @@ def _run_dynamics(m, X, V):
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
     (
-    M_tt_ups_xx, M_tt_ups_xy, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_ups_xx,
-        M_ta_ups_xy, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yy, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy,
-        M_ta_ups_zz, M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
-        Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z,
-    ) = sums
-    sums = [0.0] * 27
+    M_tt_tube_xx, M_tt_tube_xy, M_tt_tube_xz, M_tt_tube_yy, M_tt_tube_yz, M_tt_tube_zz,
+        M_ta_tube_xx, M_ta_tube_xy, M_ta_tube_xz, M_ta_tube_yx, M_ta_tube_yy, M_ta_tube_yz,
+        M_ta_tube_zx, M_ta_tube_zy, M_ta_tube_zz, M_aa_tube_xx, M_aa_tube_xy, M_aa_tube_xz,
+        M_aa_tube_yy, M_aa_tube_yz, M_aa_tube_zz, Z_t_tube_x, Z_t_tube_y, Z_t_tube_z, Z_a_tube_x,
+        Z_a_tube_y, Z_a_tube_z,
+    ) = [0.0] * 27
     for leg, k in legs[1]:
         (
         tube_J_group_2_in_axes2_xx, tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz,
@@ -2427,22 +2645,22 @@ def _run_dynamics(m, X, V):
         tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
         tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
         tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
-        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
         tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
-        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
         tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
-        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-mu_c1) the moment that goes with it
         tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
@@ -3059,7 +3277,7 @@ def _run_dynamics(m, X, V):
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
             tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z)
         )
-        # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_in_axes2_yx = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y +
             tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y
@@ -3084,11 +3302,11 @@ def _run_dynamics(m, X, V):
         tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
             tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z
         )
-        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_in_axes2_yz = (
         tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y
         )
-        # (tube-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z
         tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17
         tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
@@ -3108,7 +3326,7 @@ def _run_dynamics(m, X, V):
         tube_G_o_in_axes2_z = (
         inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_w_1_t_77
         )
-        # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m1_in_axes2_x = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2
         )
@@ -3118,7 +3336,7 @@ def _run_dynamics(m, X, V):
         tube_dalpha_G_m1_in_axes2_z = (
         tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2
         )
-        # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m1_in_axes2_x = (
         tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_h_3_in_spec2_z*tube_m1_w_2
         )
@@ -3128,13 +3346,13 @@ def _run_dynamics(m, X, V):
         tube_d_G_m1_in_axes2_z = (
         tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_d_N_2_in_axes2_zz*tube_m1_w_2
         )
-        # (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_o_t = (
         tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
             tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_m1_w_1_t
         )
         tube_G_m1_o = 1.35*tube_G_m1_o_t
-        # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m2_in_axes2_x = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2
         )
@@ -3144,7 +3362,7 @@ def _run_dynamics(m, X, V):
         tube_dalpha_G_m2_in_axes2_z = (
         tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2
         )
-        # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m2_in_axes2_x = (
         tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_h_3_in_spec2_z*tube_m2_w_2
         )
@@ -3154,10 +3372,10 @@ def _run_dynamics(m, X, V):
         tube_d_G_m2_in_axes2_z = (
         tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_d_N_2_in_axes2_zz*tube_m2_w_2
         )
-        # (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_m2_w_1_t
         tube_G_m2_o = -1.35*tube_G_m2_o_t
-        # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m3_in_axes2_x = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2
         )
@@ -3167,7 +3385,7 @@ def _run_dynamics(m, X, V):
         tube_dalpha_G_m3_in_axes2_z = (
         tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2
         )
-        # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m3_in_axes2_x = (
         tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_h_3_in_spec2_z*tube_m3_w_2
         )
@@ -3177,13 +3395,13 @@ def _run_dynamics(m, X, V):
         tube_d_G_m3_in_axes2_z = (
         tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_d_N_2_in_axes2_zz*tube_m3_w_2
         )
-        # (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_o_t = (
         tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
             tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_m3_w_1_t
         )
         tube_G_m3_o = 1.35*tube_G_m3_o_t
-        # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m_in_axes2_xx = (
         -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
             tube_dalpha_G_m3_in_axes2_x*tube_end_p3_in_axes2_z
@@ -3220,7 +3438,7 @@ def _run_dynamics(m, X, V):
         tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z +
             tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z
         )
-        # (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m_in_axes2_xx = (
         -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
             tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z
@@ -3254,7 +3472,7 @@ def _run_dynamics(m, X, V):
         tube_d_G_m_in_axes2_zz = (
         tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z
         )
-        # (tube-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m_o_in_axes2_x = (
         -tube_G_m2_o*tube_end_p2_in_axes2_y - tube_G_m3_o*tube_end_p3_in_axes2_z
         )
@@ -3607,21 +3825,46 @@ def _run_dynamics(m, X, V):
         inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 - tube_mu1_c3_t*tube_nu_1
         )
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
-            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
+            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
+            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
+            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
+            1.35)
         )
-        sums = m.added(sums, leg, (
-        tube_Q_xx, tube_Q_xy, tube_Q_xz, tube_Q_yy, tube_Q_yz, tube_Q_zz, tube_M_ta_t_13,
-            tube_M_ta_t_14, tube_M_ta_t_15, tube_M_ta_t_16, tube_M_ta_t_17, tube_M_ta_t_18,
-            tube_M_ta_t_19, tube_M_ta_t_20, tube_M_ta_t_21, tube_M_aa_t_10, tube_M_aa_t_11,
-            tube_M_aa_t_12, tube_M_aa_t_13, tube_M_aa_t_14, tube_M_aa_t_15, tube_U_x,
-            tube_U_y, tube_U_z, tube_Z_a_t, tube_Z_a_t_2, tube_Z_a_t_3,
-        ))
-        # (tube-n_c1) unit force that the leg's freedoms leave out
+        # (M_tt) translational block of M
+        M_tt_tube_xx += tube_Q_xx
+        M_tt_tube_xy += tube_Q_xy
+        M_tt_tube_xz += tube_Q_xz
+        M_tt_tube_yy += tube_Q_yy
+        M_tt_tube_yz += tube_Q_yz
+        M_tt_tube_zz += tube_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_tube_xx += tube_M_ta_t_13
+        M_ta_tube_xy += tube_M_ta_t_14
+        M_ta_tube_xz += tube_M_ta_t_15
+        M_ta_tube_yx += tube_M_ta_t_16
+        M_ta_tube_yy += tube_M_ta_t_17
+        M_ta_tube_yz += tube_M_ta_t_18
+        M_ta_tube_zx += tube_M_ta_t_19
+        M_ta_tube_zy += tube_M_ta_t_20
+        M_ta_tube_zz += tube_M_ta_t_21
+        # (M_aa) rotational block of M
+        M_aa_tube_xx += tube_M_aa_t_10
+        M_aa_tube_xy += tube_M_aa_t_11
+        M_aa_tube_xz += tube_M_aa_t_12
+        M_aa_tube_yy += tube_M_aa_t_13
+        M_aa_tube_yz += tube_M_aa_t_14
+        M_aa_tube_zz += tube_M_aa_t_15
+        # (Z_t) translational part of Z
+        Z_t_tube_x += tube_U_x
+        Z_t_tube_y += tube_U_y
+        Z_t_tube_z += tube_U_z
+        # (Z_a) rotational part of Z
+        Z_a_tube_x += tube_Z_a_t
+        Z_a_tube_y += tube_Z_a_t_2
+        Z_a_tube_z += tube_Z_a_t_3
+        # (tube-n_c1) unit force of the constraint wrench
         out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_x
         out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_y
         out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_z
@@ -3631,7 +3874,7 @@ def _run_dynamics(m, X, V):
         out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
         # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[0][leg]] = tube_gamma_c1
-        # (tube-n_c2) unit force that the leg's freedoms leave out
+        # (tube-n_c2) unit force of the constraint wrench
         out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_x
         out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_y
         out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_z
@@ -3647,13 +3890,6 @@ def _run_dynamics(m, X, V):
         out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_z
         # (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[2][leg]] = tube_gamma_c3
-    (
-    M_tt_tube_xx, M_tt_tube_xy, M_tt_tube_xz, M_tt_tube_yy, M_tt_tube_yz, M_tt_tube_zz,
-        M_ta_tube_xx, M_ta_tube_xy, M_ta_tube_xz, M_ta_tube_yx, M_ta_tube_yy, M_ta_tube_yz,
-        M_ta_tube_zx, M_ta_tube_zy, M_ta_tube_zz, M_aa_tube_xx, M_aa_tube_xy, M_aa_tube_xz,
-        M_aa_tube_yy, M_aa_tube_yz, M_aa_tube_zz, Z_t_tube_x, Z_t_tube_y, Z_t_tube_z, Z_a_tube_x,
-        Z_a_tube_y, Z_a_tube_z,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_tube_xx + M_tt_ups_xx + m_star
     M_tt_xy = M_tt_tube_xy + M_tt_ups_xy
@@ -3802,7 +4038,11 @@ def _run_M(m, X):
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
-    sums = [0.0] * 21
+    (
+    M_tt_ups_xx, M_tt_ups_xy, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_ups_xx,
+        M_ta_ups_xy, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yy, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy,
+        M_ta_ups_zz, M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
+    ) = [0.0] * 21
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -3944,22 +4184,40 @@ def _run_M(m, X):
         ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
         ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
-            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
+            (abs(ups_root_2) > _TOLERANCE * 1.38293)
         )
-        sums = m.added(sums, leg, (
-        ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz, ups_Q_zz, ups_M_ta_t_3,
-            ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
-            ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
-            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6,
-        ))
+        # (M_tt) translational block of M
+        M_tt_ups_xx += ups_Q_xx
+        M_tt_ups_xy += ups_Q_xy
+        M_tt_ups_xz += ups_Q_xz
+        M_tt_ups_yy += ups_Q_yy
+        M_tt_ups_yz += ups_Q_yz
+        M_tt_ups_zz += ups_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_ups_xx += ups_M_ta_t_3
+        M_ta_ups_xy += ups_M_ta_t_4
+        M_ta_ups_xz += ups_M_ta_t_5
+        M_ta_ups_yx += ups_M_ta_t_6
+        M_ta_ups_yy += ups_M_ta_t_8
+        M_ta_ups_yz += ups_M_ta_t_9
+        M_ta_ups_zx += ups_M_ta_t_10
+        M_ta_ups_zy += ups_M_ta_t_11
+        M_ta_ups_zz += ups_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_ups_xx += ups_M_aa_t
+        M_aa_ups_xy += ups_M_aa_t_2
+        M_aa_ups_xz += ups_M_aa_t_3
+        M_aa_ups_yy += ups_M_aa_t_4
+        M_aa_ups_yz += ups_M_aa_t_5
+        M_aa_ups_zz += ups_M_aa_t_6
     (
-    M_tt_ups_xx, M_tt_ups_xy, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_ups_xx,
-        M_ta_ups_xy, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yy, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy,
-        M_ta_ups_zz, M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
-    ) = sums
-    sums = [0.0] * 21
+    M_tt_tube_xx, M_tt_tube_xy, M_tt_tube_xz, M_tt_tube_yy, M_tt_tube_yz, M_tt_tube_zz,
+        M_ta_tube_xx, M_ta_tube_xy, M_ta_tube_xz, M_ta_tube_yx, M_ta_tube_yy, M_ta_tube_yz,
+        M_ta_tube_zx, M_ta_tube_zy, M_ta_tube_zz, M_aa_tube_xx, M_aa_tube_xy, M_aa_tube_xz,
+        M_aa_tube_yy, M_aa_tube_yz, M_aa_tube_zz,
+    ) = [0.0] * 21
     for leg, k in legs[1]:
         (
         tube_J_group_2_in_axes2_xx, tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz,
@@ -4098,16 +4356,16 @@ def _run_M(m, X):
             tube_c_1*tube_n_m3_t_2)
         )
         tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
         )
-        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
         tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
-        # (tube-n_c1) unit force that the leg's freedoms leave out
+        # (tube-n_c1) unit force of the constraint wrench
         tube_n_c1_t = tube_s_1*tube_s_2
         tube_n_c1_t_2 = tube_c_1*tube_s_2
         tube_n_c1_x = (
@@ -4122,7 +4380,7 @@ def _run_M(m, X):
         tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
             tube_base_frame_zy*tube_n_c1_t_2
         )
-        # (tube-n_c2) unit force that the leg's freedoms leave out
+        # (tube-n_c2) unit force of the constraint wrench
         tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
         tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
         tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
@@ -4459,7 +4717,7 @@ def _run_M(m, X):
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
             tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z)
         )
-        # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_in_axes2_yx = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y +
             tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y
@@ -4484,11 +4742,11 @@ def _run_M(m, X):
         tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
             tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z
         )
-        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_in_axes2_yz = (
         tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y
         )
-        # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m1_in_axes2_x = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2
         )
@@ -4498,7 +4756,7 @@ def _run_M(m, X):
         tube_dalpha_G_m1_in_axes2_z = (
         tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2
         )
-        # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m1_in_axes2_x = (
         tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_h_3_in_spec2_z*tube_m1_w_2
         )
@@ -4508,7 +4766,7 @@ def _run_M(m, X):
         tube_d_G_m1_in_axes2_z = (
         tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_d_N_2_in_axes2_zz*tube_m1_w_2
         )
-        # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m2_in_axes2_x = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2
         )
@@ -4518,7 +4776,7 @@ def _run_M(m, X):
         tube_dalpha_G_m2_in_axes2_z = (
         tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2
         )
-        # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m2_in_axes2_x = (
         tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_h_3_in_spec2_z*tube_m2_w_2
         )
@@ -4528,7 +4786,7 @@ def _run_M(m, X):
         tube_d_G_m2_in_axes2_z = (
         tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_d_N_2_in_axes2_zz*tube_m2_w_2
         )
-        # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m3_in_axes2_x = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2
         )
@@ -4538,7 +4796,7 @@ def _run_M(m, X):
         tube_dalpha_G_m3_in_axes2_z = (
         tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2
         )
-        # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m3_in_axes2_x = (
         tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_h_3_in_spec2_z*tube_m3_w_2
         )
@@ -4548,7 +4806,7 @@ def _run_M(m, X):
         tube_d_G_m3_in_axes2_z = (
         tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_d_N_2_in_axes2_zz*tube_m3_w_2
         )
-        # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m_in_axes2_xx = (
         -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
             tube_dalpha_G_m3_in_axes2_x*tube_end_p3_in_axes2_z
@@ -4585,7 +4843,7 @@ def _run_M(m, X):
         tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z +
             tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z
         )
-        # (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m_in_axes2_xx = (
         -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
             tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z
@@ -4877,25 +5135,37 @@ def _run_M(m, X):
             tube_M_aa_t_8*tube_n_c1_y + tube_M_aa_t_9*tube_n_c2_y)
         )
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
-            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
+            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
+            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
+            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
+            1.35)
         )
-        sums = m.added(sums, leg, (
-        tube_Q_xx, tube_Q_xy, tube_Q_xz, tube_Q_yy, tube_Q_yz, tube_Q_zz, tube_M_ta_t_13,
-            tube_M_ta_t_14, tube_M_ta_t_15, tube_M_ta_t_16, tube_M_ta_t_17, tube_M_ta_t_18,
-            tube_M_ta_t_19, tube_M_ta_t_20, tube_M_ta_t_21, tube_M_aa_t_10, tube_M_aa_t_11,
-            tube_M_aa_t_12, tube_M_aa_t_13, tube_M_aa_t_14, tube_M_aa_t_15,
-        ))
-    (
-    M_tt_tube_xx, M_tt_tube_xy, M_tt_tube_xz, M_tt_tube_yy, M_tt_tube_yz, M_tt_tube_zz,
-        M_ta_tube_xx, M_ta_tube_xy, M_ta_tube_xz, M_ta_tube_yx, M_ta_tube_yy, M_ta_tube_yz,
-        M_ta_tube_zx, M_ta_tube_zy, M_ta_tube_zz, M_aa_tube_xx, M_aa_tube_xy, M_aa_tube_xz,
-        M_aa_tube_yy, M_aa_tube_yz, M_aa_tube_zz,
-    ) = sums
+        # (M_tt) translational block of M
+        M_tt_tube_xx += tube_Q_xx
+        M_tt_tube_xy += tube_Q_xy
+        M_tt_tube_xz += tube_Q_xz
+        M_tt_tube_yy += tube_Q_yy
+        M_tt_tube_yz += tube_Q_yz
+        M_tt_tube_zz += tube_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_tube_xx += tube_M_ta_t_13
+        M_ta_tube_xy += tube_M_ta_t_14
+        M_ta_tube_xz += tube_M_ta_t_15
+        M_ta_tube_yx += tube_M_ta_t_16
+        M_ta_tube_yy += tube_M_ta_t_17
+        M_ta_tube_yz += tube_M_ta_t_18
+        M_ta_tube_zx += tube_M_ta_t_19
+        M_ta_tube_zy += tube_M_ta_t_20
+        M_ta_tube_zz += tube_M_ta_t_21
+        # (M_aa) rotational block of M
+        M_aa_tube_xx += tube_M_aa_t_10
+        M_aa_tube_xy += tube_M_aa_t_11
+        M_aa_tube_xz += tube_M_aa_t_12
+        M_aa_tube_yy += tube_M_aa_t_13
+        M_aa_tube_yz += tube_M_aa_t_14
+        M_aa_tube_zz += tube_M_aa_t_15
     # (M_tt) translational block of M
     M_tt_xx = M_tt_tube_xx + M_tt_ups_xx + m_star
     M_tt_xy = M_tt_tube_xy + M_tt_ups_xy
@@ -5066,7 +5336,7 @@ def _run_Z(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 6
+    Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
@@ -5271,15 +5541,19 @@ def _run_Z(m, X, V):
         ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
         ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
-            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
+            (abs(ups_root_2) > _TOLERANCE * 1.38293)
         )
-        sums = m.added(sums, leg, (
-        ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
-        ))
-    Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z = sums
-    sums = [0.0] * 6
+        # (Z_t) translational part of Z
+        Z_t_ups_x += ups_U_x
+        Z_t_ups_y += ups_U_y
+        Z_t_ups_z += ups_U_z
+        # (Z_a) rotational part of Z
+        Z_a_ups_x += ups_Z_a_t
+        Z_a_ups_y += ups_Z_a_t_2
+        Z_a_ups_z += ups_Z_a_t_3
+    Z_t_tube_x, Z_t_tube_y, Z_t_tube_z, Z_a_tube_x, Z_a_tube_y, Z_a_tube_z = [0.0] * 6
     for leg, k in legs[1]:
         (
         tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
@@ -5470,14 +5744,14 @@ def _run_Z(m, X, V):
         tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
         tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
         tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
-        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
         tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-size_c3) size of the moment
         tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
@@ -5842,7 +6116,7 @@ def _run_Z(m, X, V):
         # (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_root_2
         tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z + tube_f_3_o_in_axes2_y*tube_root_2
-        # (tube-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z
         tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17
         tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
@@ -5862,22 +6136,22 @@ def _run_Z(m, X, V):
         tube_G_o_in_axes2_z = (
         inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_qd_1_t_2
         )
-        # (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_o_t = (
         tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
             tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_qd_1_t_3
         )
         tube_G_m1_o = 1.35*tube_G_m1_o_t
-        # (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_qd_1_t_4
         tube_G_m2_o = -1.35*tube_G_m2_o_t
-        # (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_o_t = (
         tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
             tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_qd_1_t_5
         )
         tube_G_m3_o = 1.35*tube_G_m3_o_t
-        # (tube-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m_o_in_axes2_x = (
         -tube_G_m2_o*tube_end_p2_in_axes2_y - tube_G_m3_o*tube_end_p3_in_axes2_z
         )
@@ -5914,17 +6188,21 @@ def _run_Z(m, X, V):
             axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*tube_q_x - tube_U_x*tube_q_y
         )
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
-            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
+            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
+            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
+            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
+            1.35)
         )
-        sums = m.added(sums, leg, (
-        tube_U_x, tube_U_y, tube_U_z, tube_Z_a_t, tube_Z_a_t_2, tube_Z_a_t_3,
-        ))
-    Z_t_tube_x, Z_t_tube_y, Z_t_tube_z, Z_a_tube_x, Z_a_tube_y, Z_a_tube_z = sums
+        # (Z_t) translational part of Z
+        Z_t_tube_x += tube_U_x
+        Z_t_tube_y += tube_U_y
+        Z_t_tube_z += tube_U_z
+        # (Z_a) rotational part of Z
+        Z_a_tube_x += tube_Z_a_t
+        Z_a_tube_y += tube_Z_a_t_2
+        Z_a_tube_z += tube_Z_a_t_3
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_tube_x + Z_t_ups_x
     Z_t_y = Z_p_y + Z_t_tube_y + Z_t_ups_y
@@ -6034,9 +6312,8 @@ def _run_H(m, X):
         ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
         ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_2) >
-            _TOLERANCE * 1.38293))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_2) > _TOLERANCE * 1.38293)
         )
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = ups_w_3_x
@@ -6225,24 +6502,24 @@ def _run_Hk(m, X):
             tube_c_1*tube_n_m3_t_2)
         )
         tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
         )
-        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
         tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2
-        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
         tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
-        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
-        # (tube-n_c1) unit force that the leg's freedoms leave out
+        # (tube-n_c1) unit force of the constraint wrench
         tube_n_c1_t = tube_s_1*tube_s_2
         tube_n_c1_t_2 = tube_c_1*tube_s_2
         tube_n_c1_x = (
@@ -6263,7 +6540,7 @@ def _run_Hk(m, X):
         tube_mu_c1_in_axes2_z = (
         -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
         )
-        # (tube-n_c2) unit force that the leg's freedoms leave out
+        # (tube-n_c2) unit force of the constraint wrench
         tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
         tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
         tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
@@ -6332,11 +6609,11 @@ def _run_Hk(m, X):
             tube_n_c2_y*tube_q_x - axis_x_tube_axes2_z*tube_mu_c2_t - tube_n_c2_x*tube_q_y
         )
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
-            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
+            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0)
         )
-        # (tube-n_c1) unit force that the leg's freedoms leave out
+        # (tube-n_c1) unit force of the constraint wrench
         out_Hk[_Hk_tube[0][leg]] = tube_n_c1_x
         out_Hk[_Hk_tube[1][leg]] = tube_n_c1_y
         out_Hk[_Hk_tube[2][leg]] = tube_n_c1_z
@@ -6344,7 +6621,7 @@ def _run_Hk(m, X):
         out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
         out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
         out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
-        # (tube-n_c2) unit force that the leg's freedoms leave out
+        # (tube-n_c2) unit force of the constraint wrench
         out_Hk[_Hk_tube[6][leg]] = tube_n_c2_x
         out_Hk[_Hk_tube[7][leg]] = tube_n_c2_y
         out_Hk[_Hk_tube[8][leg]] = tube_n_c2_z
@@ -6598,22 +6875,22 @@ def _run_constraint_bias(m, X, V):
         tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
         tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
         tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
-        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
         tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
-        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
         tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
-        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-size_c3) size of the moment
         tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
@@ -6879,12 +7156,12 @@ def _run_constraint_bias(m, X, V):
         inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 - tube_mu1_c3_t*tube_nu_1
         )
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
-            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
+            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
+            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
+            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
+            1.35)
         )
         # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[0][leg]] = tube_gamma_c1
@@ -7040,7 +7317,7 @@ def _run_required(m, X, V, A):
     mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
     mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
     mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
-    sums = [0.0] * 6
+    R_t_t, R_t_t_2, R_t_t_3, R_a_ups_x, R_a_ups_y, R_a_ups_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
@@ -7252,13 +7529,18 @@ def _run_required(m, X, V, A):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
-            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
+            (abs(ups_root_2) > _TOLERANCE * 1.38293)
         )
-        sums = m.added(sums, leg, (
-        ups_c_x, ups_c_y, ups_c_z, ups_R_a_t, ups_R_a_t_2, ups_R_a_t_3,
-        ))
+        # (R_t) force that actuators and external wrench must give
+        R_t_t += ups_c_x
+        R_t_t_2 += ups_c_y
+        R_t_t_3 += ups_c_z
+        # (R_a) moment that actuators and external wrench must give
+        R_a_ups_x += ups_R_a_t
+        R_a_ups_y += ups_R_a_t_2
+        R_a_ups_z += ups_R_a_t_3
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
         out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
@@ -7267,8 +7549,7 @@ def _run_required(m, X, V, A):
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
-    R_t_t, R_t_t_2, R_t_t_3, R_a_ups_x, R_a_ups_y, R_a_ups_z = sums
-    sums = [0.0] * 6
+    R_t_t_4, R_t_t_5, R_t_t_6, R_a_tube_x, R_a_tube_y, R_a_tube_z = [0.0] * 6
     for leg, k in legs[1]:
         (
         tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
@@ -7459,22 +7740,22 @@ def _run_required(m, X, V, A):
         tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
         tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
         tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
-        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
         tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
-        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
         tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
-        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-mu_c1) the moment that goes with it
         tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
@@ -7901,7 +8182,7 @@ def _run_required(m, X, V, A):
         # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2
         tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2
-        # (tube-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z
         tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17
         tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
@@ -7921,22 +8202,22 @@ def _run_required(m, X, V, A):
         tube_G_in_axes2_z = (
         inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 + tube_G_t_5*tube_qd_1_t_2
         )
-        # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_t = (
         tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
             tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3
         )
         tube_G_m1 = 1.35*tube_G_m1_t
-        # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4
         tube_G_m2 = -1.35*tube_G_m2_t
-        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_t = (
         tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
             tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5
         )
         tube_G_m3 = 1.35*tube_G_m3_t
-        # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y - tube_G_m3*tube_end_p3_in_axes2_z
         tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y - tube_G_m1*tube_end_p1_in_axes2_z
         tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z + tube_G_m3*tube_n_m3_in_axes2_z
@@ -7999,17 +8280,22 @@ def _run_required(m, X, V, A):
             axis_z_tube_axes2_x*tube_q_y
         )
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
-            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
+            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
+            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
+            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
+            1.35)
         )
-        sums = m.added(sums, leg, (
-        tube_c_x, tube_c_y, tube_c_z, tube_R_a_t, tube_R_a_t_2, tube_R_a_t_3,
-        ))
-        # (tube-n_c1) unit force that the leg's freedoms leave out
+        # (R_t) force that actuators and external wrench must give
+        R_t_t_4 += tube_c_x
+        R_t_t_5 += tube_c_y
+        R_t_t_6 += tube_c_z
+        # (R_a) moment that actuators and external wrench must give
+        R_a_tube_x += tube_R_a_t
+        R_a_tube_y += tube_R_a_t_2
+        R_a_tube_z += tube_R_a_t_3
+        # (tube-n_c1) unit force of the constraint wrench
         out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_x
         out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_y
         out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_z
@@ -8017,7 +8303,7 @@ def _run_required(m, X, V, A):
         out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
         out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
         out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
-        # (tube-n_c2) unit force that the leg's freedoms leave out
+        # (tube-n_c2) unit force of the constraint wrench
         out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_x
         out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_y
         out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_z
@@ -8029,7 +8315,6 @@ def _run_required(m, X, V, A):
         out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_x
         out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_y
         out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_z
-    R_t_t_4, R_t_t_5, R_t_t_6, R_a_tube_x, R_a_tube_y, R_a_tube_z = sums
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t - R_t_t_4
     R_t_y = f_p_y - R_t_t_2 - R_t_t_5
@@ -8138,8 +8423,8 @@ def _run_inverse_kinematics(m, X):
         inv_ups_root_2 = 1.0/ups_root_2
         ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_in_axes1_z, inv_ups_root_2*ups_root_1)
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849)
         )
         # (ups-q_1) displacement of joint 1
         out_q[_q_ups[0][leg]] = ups_q_1
@@ -8195,8 +8480,8 @@ def _run_inverse_kinematics(m, X):
         inv_tube_root_2 = 1.0/tube_root_2
         tube_q_2 = atan2(-inv_tube_root_2*tube_xi_1_in_axes1_z, inv_tube_root_2*tube_root_1)
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002)
         )
         # (tube-q_1) displacement of joint 1
         out_q[_q_tube[0][leg]] = tube_q_1
@@ -8336,9 +8621,9 @@ def _run_joint_rates(m, X, V):
             axis_x_ups_axes2_x*axis_z_ups_axes2_y))
         )
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
-            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
+            (abs(ups_root_2) > _TOLERANCE * 1.38293)
         )
         # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
@@ -8523,14 +8808,14 @@ def _run_joint_rates(m, X, V):
             tube_c_1*tube_n_m3_t_2)
         )
         tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
         )
-        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
         tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-size_c3) size of the moment
         tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
@@ -8698,12 +8983,12 @@ def _run_joint_rates(m, X, V):
         )
         tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
-            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
+            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
+            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
+            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
+            1.35)
         )
         # (tube-qd_1) rate of joint 1
         out_qd[_qd_tube[0][leg]] = tube_qd_1
@@ -8898,9 +9183,9 @@ def _run_joint_accelerations(m, X, V, A):
             ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         )
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
-            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
+            (abs(ups_root_2) > _TOLERANCE * 1.38293)
         )
         # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
@@ -9093,14 +9378,14 @@ def _run_joint_accelerations(m, X, V, A):
         tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
         tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
         tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
-        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
         tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-size_c3) size of the moment
         tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
@@ -9420,12 +9705,12 @@ def _run_joint_accelerations(m, X, V, A):
         )
         tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
-            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
+            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
+            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
+            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
+            1.35)
         )
         # (tube-qdd_1) acceleration of joint 1
         out_qdd[_qdd_tube[0][leg]] = tube_qdd_1
@@ -9616,47 +9901,47 @@ def _run_constraints(m, X):
         tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
         tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
         tube_n_m3_t_5 = tube_s_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1)
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
-        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
         tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-size_c3) size of the moment
         tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
         # (tube-mu2_c3) moment along direction 2 that goes with it
         tube_mu2_c3 = 1.0/tube_size_c3
-        # (tube-phi_c1) distance by which the leg misses the platform, along a direction left out
+        # (tube-phi_c1) loop-closure residual along the constraint force
         tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
         tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
         tube_phi_c1 = (
         inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_root_2 -
             inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_root_2
         )
-        # (tube-phi_c2) distance by which the leg misses the platform, along a direction left out
+        # (tube-phi_c2) loop-closure residual along the constraint force
         tube_phi_c2 = (
         inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_in_axes2_z*tube_root_1 +
             inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes2_z*tube_root_1
         )
-        # (tube-phi_c3) angle by which the leg misses the platform, about a direction left out
+        # (tube-phi_c3) loop-closure residual about the constraint moment
         tube_phi_c3 = (
         tube_end_p1_in_axes2_x*tube_m1_c3_t*tube_mu2_c3 +
             tube_end_p3_in_axes2_y*tube_m3_c3*tube_mu2_c3 - tube_mu2_c3*(tube_c_1*tube_n_m2_t +
             tube_n_m2_t_2*tube_s_1)
         )
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
-            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
+            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0)
         )
-        # (tube-phi_c1) distance by which the leg misses the platform, along a direction left out
+        # (tube-phi_c1) loop-closure residual along the constraint force
         out_constraints[_constraints_tube[0][leg]] = tube_phi_c1
-        # (tube-phi_c2) distance by which the leg misses the platform, along a direction left out
+        # (tube-phi_c2) loop-closure residual along the constraint force
         out_constraints[_constraints_tube[1][leg]] = tube_phi_c2
-        # (tube-phi_c3) angle by which the leg misses the platform, about a direction left out
+        # (tube-phi_c3) loop-closure residual about the constraint moment
         out_constraints[_constraints_tube[2][leg]] = tube_phi_c3
     return ok, (out_constraints,)
 
@@ -9728,7 +10013,7 @@ def _run_legs(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
-    out_drive = m.zeros("drive")
+    out_actuator = m.zeros("actuator")
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
@@ -9937,18 +10222,18 @@ def _run_legs(m, X, V, A):
             axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
-            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
+            (abs(ups_root_2) > _TOLERANCE * 1.38293)
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
         out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_y
         out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_z
         # (ups-w_3) reciprocal vector 3
-        out_drive[_drive_ups[0][leg]] = axis_x_ups_axes2_x
-        out_drive[_drive_ups[1][leg]] = axis_x_ups_axes2_y
-        out_drive[_drive_ups[2][leg]] = axis_x_ups_axes2_z
+        out_actuator[_actuator_ups[0][leg]] = axis_x_ups_axes2_x
+        out_actuator[_actuator_ups[1][leg]] = axis_x_ups_axes2_y
+        out_actuator[_actuator_ups[2][leg]] = axis_x_ups_axes2_z
     for leg, k in legs[1]:
         (
         tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
@@ -10139,22 +10424,22 @@ def _run_legs(m, X, V, A):
         tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
         tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
         tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
-        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
         tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
-        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
         tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
-        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-mu_c1) the moment that goes with it
         tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
@@ -10605,7 +10890,7 @@ def _run_legs(m, X, V, A):
         # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2
         tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2
-        # (tube-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z
         tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17
         tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
@@ -10625,22 +10910,22 @@ def _run_legs(m, X, V, A):
         tube_G_in_axes2_z = (
         inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 + tube_G_t_5*tube_qd_1_t_2
         )
-        # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_t = (
         tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
             tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3
         )
         tube_G_m1 = 1.35*tube_G_m1_t
-        # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4
         tube_G_m2 = -1.35*tube_G_m2_t
-        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_t = (
         tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
             tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5
         )
         tube_G_m3 = 1.35*tube_G_m3_t
-        # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y - tube_G_m3*tube_end_p3_in_axes2_z
         tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y - tube_G_m1*tube_end_p1_in_axes2_z
         tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z + tube_G_m3*tube_n_m3_in_axes2_z
@@ -10671,12 +10956,12 @@ def _run_legs(m, X, V, A):
             axis_z_tube_axes2_z*tube_G_m_in_axes2_z
         )
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
-            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
+            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
+            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
+            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
+            1.35)
         )
         # (tube-c) leg force on the platform without actuation and without the mass at the connection point
         out_leg_force[_leg_force_tube[0][leg]] = tube_c_x
@@ -10686,7 +10971,7 @@ def _run_legs(m, X, V, A):
         out_leg_force[_leg_force_tube[3][leg]] = tube_c_m_x
         out_leg_force[_leg_force_tube[4][leg]] = tube_c_m_y
         out_leg_force[_leg_force_tube[5][leg]] = tube_c_m_z
-        # (tube-n_c1) unit force that the leg's freedoms leave out
+        # (tube-n_c1) unit force of the constraint wrench
         out_constraint_direction[_constraint_direction_tube[0][leg]] = axis_y_tube_axes2_x
         out_constraint_direction[_constraint_direction_tube[1][leg]] = axis_y_tube_axes2_y
         out_constraint_direction[_constraint_direction_tube[2][leg]] = axis_y_tube_axes2_z
@@ -10694,7 +10979,7 @@ def _run_legs(m, X, V, A):
         out_constraint_direction[_constraint_direction_tube[3][leg]] = tube_mu_c1_x
         out_constraint_direction[_constraint_direction_tube[4][leg]] = tube_mu_c1_y
         out_constraint_direction[_constraint_direction_tube[5][leg]] = tube_mu_c1_z
-        # (tube-n_c2) unit force that the leg's freedoms leave out
+        # (tube-n_c2) unit force of the constraint wrench
         out_constraint_direction[_constraint_direction_tube[6][leg]] = axis_z_tube_axes2_x
         out_constraint_direction[_constraint_direction_tube[7][leg]] = axis_z_tube_axes2_y
         out_constraint_direction[_constraint_direction_tube[8][leg]] = axis_z_tube_axes2_z
@@ -10706,7 +10991,7 @@ def _run_legs(m, X, V, A):
         out_constraint_direction[_constraint_direction_tube[12][leg]] = tube_mu_c3_x
         out_constraint_direction[_constraint_direction_tube[13][leg]] = tube_mu_c3_y
         out_constraint_direction[_constraint_direction_tube[14][leg]] = tube_mu_c3_z
-    return ok, (out_leg_force, out_drive, out_constraint_direction,)
+    return ok, (out_leg_force, out_actuator, out_constraint_direction,)
 
 
 # potential: 263 mul, 202 add, 10 div, 10 sqrt, 0 trig
@@ -10761,7 +11046,7 @@ def _run_potential(m, X):
         R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
         R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
-    sums = [0.0] * 1
+    potential_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
         ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
@@ -10829,14 +11114,12 @@ def _run_potential(m, X):
             ups_potential_t_3*ups_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849)
         )
-        sums = m.added(sums, leg, (
-        ups_potential_t_6,
-        ))
-    potential_ups, = sums
-    sums = [0.0] * 1
+        # (potential) potential energy
+        potential_ups += ups_potential_t_6
+    potential_tube, = [0.0] * 1
     for leg, k in legs[1]:
         (
         tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx, tube_base_frame_xy,
@@ -10908,13 +11191,11 @@ def _run_potential(m, X):
             tube_link3_mass*(tube_b_in_spec2_x + tube_root_2))
         )
         ok = (
-        ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002))
+        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
+            > _TOLERANCE * _TOLERANCE * 1.8225000000000002)
         )
-        sums = m.added(sums, leg, (
-        tube_potential_t_6,
-        ))
-    potential_tube, = sums
+        # (potential) potential energy
+        potential_tube += tube_potential_t_6
     # (potential) potential energy
     potential = potential_tube + potential_ups - potential_t
     # (potential) potential energy
@@ -10973,7 +11254,7 @@ def _run_condition(m, X):
     out_reach = m.zeros("reach")
     # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = 1.3764070284330867
-    sums = [0.0] * 1
+    spread_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
         ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -11020,7 +11301,7 @@ def _run_condition(m, X):
         ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
         ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
         ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
-        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         ups_pivot_size = abs(ups_rho2_1)
         ups_pivot_size_2 = abs(ups_rho2_2)
         ups_pivot_size_3 = abs(ups_root_1)
@@ -11042,13 +11323,12 @@ def _run_condition(m, X):
         ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
-        clear & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
-            _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
+        clear & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
+            (abs(ups_root_2) > _TOLERANCE * 1.38293)
         )
-        sums = m.added(sums, leg, (
-        ups_spread_t_4,
-        ))
+        # (spread) rms distance of the platform points from their centroid
+        spread_ups += ups_spread_t_4
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = ups_w_3_x
         out_H[_H_ups[1][leg]] = ups_w_3_y
@@ -11057,10 +11337,9 @@ def _run_condition(m, X):
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
-        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_ups[0][leg]] = ups_least_pivots
-    spread_ups, = sums
-    sums = [0.0] * 1
+    spread_tube, = [0.0] * 1
     for leg, k in legs[1]:
         (
         tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
@@ -11196,24 +11475,24 @@ def _run_condition(m, X):
             tube_c_1*tube_n_m3_t_2)
         )
         tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
+        # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
         )
-        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
         tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2
-        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        # (tube-m3_c1) moment part 3 of constraint wrench 1
         tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
-        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m1_c3) moment part 1 of constraint wrench 3
         tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
-        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        # (tube-m3_c3) moment part 3 of constraint wrench 3
         tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
-        # (tube-n_c1) unit force that the leg's freedoms leave out
+        # (tube-n_c1) unit force of the constraint wrench
         tube_n_c1_t = tube_s_1*tube_s_2
         tube_n_c1_t_2 = tube_c_1*tube_s_2
         tube_n_c1_x = (
@@ -11234,7 +11513,7 @@ def _run_condition(m, X):
         tube_mu_c1_in_axes2_z = (
         -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
         )
-        # (tube-n_c2) unit force that the leg's freedoms leave out
+        # (tube-n_c2) unit force of the constraint wrench
         tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
         tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
         tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
@@ -11434,17 +11713,16 @@ def _run_condition(m, X):
             tube_spread_t_3*tube_spread_t_3
         )
         clear = (
-        clear & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+        clear & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
             > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
             _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
             _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35))
+            _TOLERANCE * 1.35)
         )
-        sums = m.added(sums, leg, (
-        tube_spread_t_4,
-        ))
-        # (tube-n_c1) unit force that the leg's freedoms leave out
+        # (spread) rms distance of the platform points from their centroid
+        spread_tube += tube_spread_t_4
+        # (tube-n_c1) unit force of the constraint wrench
         out_Hk[_Hk_tube[0][leg]] = tube_n_c1_x
         out_Hk[_Hk_tube[1][leg]] = tube_n_c1_y
         out_Hk[_Hk_tube[2][leg]] = tube_n_c1_z
@@ -11452,7 +11730,7 @@ def _run_condition(m, X):
         out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
         out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
         out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
-        # (tube-n_c2) unit force that the leg's freedoms leave out
+        # (tube-n_c2) unit force of the constraint wrench
         out_Hk[_Hk_tube[6][leg]] = tube_n_c2_x
         out_Hk[_Hk_tube[7][leg]] = tube_n_c2_y
         out_Hk[_Hk_tube[8][leg]] = tube_n_c2_z
@@ -11466,7 +11744,6 @@ def _run_condition(m, X):
         out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_z
         # (tube-w_1) force part of reciprocal wrench 1
         out_pivots[_pivots_tube[0][leg]] = tube_least_pivots
-    spread_tube, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(0.2*spread_tube + 0.2*spread_ups)
     # (spread) rms distance of the platform points from their centroid
@@ -11533,19 +11810,19 @@ def _steps_dynamics(m, X, V):
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    resolve_3, resolve_4 = _resolve(Hk, 3)
-    inverse_root_5 = 1.0 / np.sqrt(weights)
-    scale_columns_6 = H * inverse_root_5
-    product_7 = np.einsum("iks,kjs->ijs", resolve_4, scale_columns_6)
-    times_8 = np.einsum("ijs,js->is", resolve_4, subtract_2)
-    least_norm_9 = _least_norm(product_7, times_8)
-    tau = inverse_root_5 * least_norm_9
-    times_11 = np.einsum("ijs,js->is", H, tau)
-    subtract_12 = subtract_2 - times_11
-    product_13 = np.einsum("iks,kjs->ijs", resolve_3, Hk)
-    times_14 = np.einsum("ijs,js->is", resolve_3, subtract_12)
-    lambda_ = _solve(product_13, times_14)
+    subtract_1 = required - extend_1
+    resolve_1, resolve_2 = _resolve(Hk, 3)
+    inverse_root_1 = 1.0 / np.sqrt(weights)
+    scale_columns_1 = H * inverse_root_1
+    product_1 = np.einsum("iks,kjs->ijs", resolve_2, scale_columns_1)
+    times_1 = np.einsum("ijs,js->is", resolve_2, subtract_1)
+    least_norm_1 = _least_norm(product_1, times_1)
+    tau = inverse_root_1 * least_norm_1
+    times_2 = np.einsum("ijs,js->is", H, tau)
+    subtract_2 = subtract_1 - times_2
+    product_2 = np.einsum("iks,kjs->ijs", resolve_1, Hk)
+    times_3 = np.einsum("ijs,js->is", resolve_1, subtract_2)
+    lambda_ = _solve(product_2, times_3)
     return (tau, lambda_,)
 
 
@@ -11554,14 +11831,14 @@ def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H, Hk, constraint_bias,
     ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
     times_1 = np.einsum("ijs,js->is", H, tau)
-    extend_2 = wrench
-    add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z
-    negative_5 = -constraint_bias
-    join_6 = np.concatenate((subtract_4, negative_5))
-    saddle_7 = _saddle(M, Hk)
-    solve_8 = _solve(saddle_7, join_6)
-    A, lambda_ = solve_8[:6], solve_8[6:]
+    extend_1 = wrench
+    add_1 = times_1 + extend_1
+    subtract_1 = add_1 - Z
+    negative_1 = -constraint_bias
+    join_1 = np.concatenate((subtract_1, negative_1))
+    saddle_1 = _saddle(M, Hk)
+    solve_1 = _solve(saddle_1, join_1)
+    A, lambda_ = solve_1[:6], solve_1[6:]
     return (A, lambda_,)
 
 
@@ -11573,21 +11850,21 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    resolve_3, resolve_4 = _resolve(Hk, 3)
-    product_5 = np.einsum("iks,kjs->ijs", resolve_4, H)
-    times_6 = np.einsum("ijs,js->is", resolve_4, subtract_2)
-    least_norm_7 = _least_norm(product_5, times_6)
-    times_8 = np.einsum("ijs,js->is", H, least_norm_7)
-    subtract_9 = subtract_2 - times_8
-    product_10 = np.einsum("iks,kjs->ijs", resolve_3, Hk)
-    times_11 = np.einsum("ijs,js->is", resolve_3, subtract_9)
-    solve_12 = _solve(product_10, times_11)
+    subtract_1 = required - extend_1
+    resolve_1, resolve_2 = _resolve(Hk, 3)
+    product_1 = np.einsum("iks,kjs->ijs", resolve_2, H)
+    times_1 = np.einsum("ijs,js->is", resolve_2, subtract_1)
+    least_norm_1 = _least_norm(product_1, times_1)
+    times_2 = np.einsum("ijs,js->is", H, least_norm_1)
+    subtract_2 = subtract_1 - times_2
+    product_2 = np.einsum("iks,kjs->ijs", resolve_1, Hk)
+    times_3 = np.einsum("ijs,js->is", resolve_1, subtract_2)
+    solve_1 = _solve(product_2, times_3)
     (
-    leg_force, drive, constraint_direction,
-    ) = m.run(_run_legs, ("leg_force", "drive", "constraint_direction"), X, V, A)
-    add_forces_13 = _with_forces(leg_force, least_norm_7, drive, [0, 1, 2, 3])
-    forces = _with_forces(add_forces_13, solve_12, constraint_direction, [4, 4, 4])
+    leg_force, actuator, constraint_direction,
+    ) = m.run(_run_legs, ("leg_force", "actuator", "constraint_direction"), X, V, A)
+    add_forces_1 = _with_forces(leg_force, least_norm_1, actuator, [0, 1, 2, 3])
+    forces = _with_forces(add_forces_1, solve_1, constraint_direction, [4, 4, 4])
     return (forces,)
 
 
@@ -11610,8 +11887,8 @@ def _steps_condition(m, X, length):
     H, Hk, lengths, legs, reach,
     ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths, length)
-    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5])
-    sigma = _singular_values(divide_rows_2)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
@@ -11620,19 +11897,19 @@ def _steps_condition_constrained(m, X, length):
     H, Hk, lengths, legs, reach,
     ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     beside_1 = np.concatenate((H, Hk), axis=1)
-    choose_length_2 = _chosen_length(lengths, length)
-    divide_rows_3 = _rows_divided(beside_1, choose_length_2, [3, 4, 5])
-    sigma = _singular_values(divide_rows_3)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_1 = _rows_divided(beside_1, choose_length_1, [3, 4, 5])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q[[2, 5, 8, 11]]
-    subtract_2 = q_actuated - take_1
+    subtract_1 = q_actuated - take_1
     constraints, = m.run(_run_constraints, ("constraints",), X)
-    negative_3 = -constraints
-    gap = np.concatenate((subtract_2, negative_3))
+    negative_1 = -constraints
+    gap = np.concatenate((subtract_1, negative_1))
     return (gap,)
 
 
@@ -11722,24 +11999,24 @@ def _steps_rotation(m, X):
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
-    join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rotation_1))
+    X = join_1
     return (X,)
 
 
 def _steps_X_dot(m, X, V):
     take_1 = V[3:6]
     take_2 = X[3:7]
-    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
-    take_4 = V[0:3]
-    X_dot = np.concatenate((take_4, quaternion_rate_3))
+    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
+    take_3 = V[0:3]
+    X_dot = np.concatenate((take_3, quaternion_rate_1))
     return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
-    join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rpy_1))
+    X = join_1
     return (X,)
 
 
@@ -11748,9 +12025,9 @@ def _steps_retract(m, X, step):
     take_2 = X[3:7]
     take_3 = step[0:3]
     take_4 = step[3:6]
-    turn_quaternion_5 = _turned(take_2, take_4)
-    add_6 = take_1 + take_3
-    X_moved = np.concatenate((add_6, turn_quaternion_5))
+    turn_quaternion_1 = _turned(take_2, take_4)
+    add_1 = take_1 + take_3
+    X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
@@ -11759,9 +12036,9 @@ def _steps_difference(m, X0, X1):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    step = np.concatenate((subtract_6, turn_between_5))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
@@ -11770,17 +12047,17 @@ def _steps_interpolate(m, X0, X1, s):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    join_7 = np.concatenate((subtract_6, turn_between_5))
-    scale_8 = join_7 * s
-    take_9 = X0[0:3]
-    take_10 = X0[3:7]
-    take_11 = scale_8[0:3]
-    take_12 = scale_8[3:6]
-    turn_quaternion_13 = _turned(take_10, take_12)
-    add_14 = take_9 + take_11
-    X = np.concatenate((add_14, turn_quaternion_13))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    join_1 = np.concatenate((subtract_1, turn_between_1))
+    scale_1 = join_1 * s
+    take_5 = X0[0:3]
+    take_6 = X0[3:7]
+    take_7 = scale_1[0:3]
+    take_8 = scale_1[3:6]
+    turn_quaternion_1 = _turned(take_6, take_8)
+    add_1 = take_5 + take_7
+    X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
 

@@ -54,12 +54,27 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+#define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
+
+/* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
+#define NQ ((size_t)SPHERICAL_3UPS_NQ)
+#define NV ((size_t)SPHERICAL_3UPS_NV)
+#define NU ((size_t)SPHERICAL_3UPS_NU)
+#define NC ((size_t)SPHERICAL_3UPS_NC)
+#define NW ((size_t)SPHERICAL_3UPS_NW)
+#define NJ ((size_t)SPHERICAL_3UPS_NJ)
+#define NL ((size_t)3)
+#define LEGS_OF_ups ((size_t)3)
+
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
 /* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
    epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
+/* Lengths, or squares of them, that are not larger count as zero. */
+#define LEAST_1 (TOLERANCE*TOLERANCE*R(0.6400000000000001))
+#define LEAST_2 (TOLERANCE*R(0.8))
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
 
@@ -114,6 +129,12 @@ INLINE void clear(real *x, size_t n)
     for (size_t i = 0; i < n; ++i) {
         x[i] = 0;
     }
+}
+
+/* What a leg adds to a sum, or gives alone. */
+INLINE void gather(real *sum, int add, real term)
+{
+    *sum = add ? *sum + term : term;
 }
 
 INLINE int is_finite(real x)
@@ -429,20 +450,20 @@ static int acceptable(const spherical_3ups_params *p)
     ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->ups_base_point[0][0], 9);
-    ok &= all_within(&p->ups_base_frame[0][0][0], 27);
-    ok &= all_rotations(&p->ups_base_frame[0][0][0], 3);
-    ok &= all_within(&p->ups_platform_point[0][0], 9);
-    ok &= all_within(&p->ups_link2_mass[0], 3);
-    ok &= none_negative(&p->ups_link2_mass[0], 3);
-    ok &= all_within(&p->ups_link2_centre_of_mass[0][0], 9);
-    ok &= all_within(&p->ups_link2_inertia[0][0][0], 27);
-    ok &= all_inertias(&p->ups_link2_inertia[0][0][0], 3);
-    ok &= all_within(&p->ups_link3_mass[0], 3);
-    ok &= none_negative(&p->ups_link3_mass[0], 3);
-    ok &= all_within(&p->ups_link3_centre_of_mass[0][0], 9);
-    ok &= all_within(&p->ups_link3_inertia[0][0][0], 27);
-    ok &= all_inertias(&p->ups_link3_inertia[0][0][0], 3);
+    ok &= all_within(&p->ups_base_point[0][0], 3*LEGS_OF_ups);
+    ok &= all_within(&p->ups_base_frame[0][0][0], 9*LEGS_OF_ups);
+    ok &= all_rotations(&p->ups_base_frame[0][0][0], LEGS_OF_ups);
+    ok &= all_within(&p->ups_platform_point[0][0], 3*LEGS_OF_ups);
+    ok &= all_within(&p->ups_link2_mass[0], LEGS_OF_ups);
+    ok &= none_negative(&p->ups_link2_mass[0], LEGS_OF_ups);
+    ok &= all_within(&p->ups_link2_centre_of_mass[0][0], 3*LEGS_OF_ups);
+    ok &= all_within(&p->ups_link2_inertia[0][0][0], 9*LEGS_OF_ups);
+    ok &= all_inertias(&p->ups_link2_inertia[0][0][0], LEGS_OF_ups);
+    ok &= all_within(&p->ups_link3_mass[0], LEGS_OF_ups);
+    ok &= none_negative(&p->ups_link3_mass[0], LEGS_OF_ups);
+    ok &= all_within(&p->ups_link3_centre_of_mass[0][0], 3*LEGS_OF_ups);
+    ok &= all_within(&p->ups_link3_inertia[0][0][0], 9*LEGS_OF_ups);
+    ok &= all_inertias(&p->ups_link3_inertia[0][0][0], LEGS_OF_ups);
     return ok;
 }
 
@@ -452,16 +473,16 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real m_star_ups = 0;
-    real h_star_ups_in_platform_x = 0;
-    real h_star_ups_in_platform_y = 0;
-    real h_star_ups_in_platform_z = 0;
-    real J_star_ups_in_platform_xx = 0;
-    real J_star_ups_in_platform_xy = 0;
-    real J_star_ups_in_platform_xz = 0;
-    real J_star_ups_in_platform_yy = 0;
-    real J_star_ups_in_platform_yz = 0;
-    real J_star_ups_in_platform_zz = 0;
+    real m_star_of_legs = 0;
+    real h_star_in_platform_x_of_legs = 0;
+    real h_star_in_platform_y_of_legs = 0;
+    real h_star_in_platform_z_of_legs = 0;
+    real J_star_in_platform_xx_of_legs = 0;
+    real J_star_in_platform_xy_of_legs = 0;
+    real J_star_in_platform_xz_of_legs = 0;
+    real J_star_in_platform_yy_of_legs = 0;
+    real J_star_in_platform_yz_of_legs = 0;
+    real J_star_in_platform_zz_of_legs = 0;
     real b_c_ups_in_platform_x = 0;
     real b_c_ups_in_platform_y = 0;
     real b_c_ups_in_platform_z = 0;
@@ -508,8 +529,8 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
     model->gravity_z = gravity_z;
     model->legs_size = legs_size;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 4; ++leg) {
-        const size_t own = leg < 3 ? leg : 0;
+    for (size_t leg = 0; leg < FILLED(LEGS_OF_ups); ++leg) {
+        const size_t own = leg < LEGS_OF_ups ? leg : 0;
         const real ups_base_point_x = params->ups_base_point[own][0];
         const real ups_base_point_y = params->ups_base_point[own][1];
         const real ups_base_point_z = params->ups_base_point[own][2];
@@ -662,38 +683,38 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
         model->ups_potential_t[leg] = ups_potential_t;
         model->ups_potential_t_2[leg] = ups_potential_t_2;
         model->ups_potential_t_3[leg] = ups_potential_t_3;
-        m_star_ups += leg < 3 ? ups_link3_mass : 0;
-        h_star_ups_in_platform_x += leg < 3 ? ups_h_star_t : 0;
-        h_star_ups_in_platform_y += leg < 3 ? ups_h_star_t_2 : 0;
-        h_star_ups_in_platform_z += leg < 3 ? ups_h_star_t_3 : 0;
-        J_star_ups_in_platform_xx += leg < 3 ? -ups_J_star_t_5 : 0;
-        J_star_ups_in_platform_xy += leg < 3 ? -ups_J_star_t_6 : 0;
-        J_star_ups_in_platform_xz += leg < 3 ? -ups_J_star_t_7 : 0;
-        J_star_ups_in_platform_yy += leg < 3 ? -ups_J_star_t_8 : 0;
-        J_star_ups_in_platform_yz += leg < 3 ? -ups_J_star_t_9 : 0;
-        J_star_ups_in_platform_zz += leg < 3 ? -ups_J_star_t_10 : 0;
-        b_c_ups_in_platform_x += leg < 3 ? ups_platform_point_x : 0;
-        b_c_ups_in_platform_y += leg < 3 ? ups_platform_point_y : 0;
-        b_c_ups_in_platform_z += leg < 3 ? ups_platform_point_z : 0;
+        m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
+        h_star_in_platform_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
+        h_star_in_platform_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
+        h_star_in_platform_z_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_3 : 0;
+        J_star_in_platform_xx_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_5 : 0;
+        J_star_in_platform_xy_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_6 : 0;
+        J_star_in_platform_xz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_7 : 0;
+        J_star_in_platform_yy_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_8 : 0;
+        J_star_in_platform_yz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_9 : 0;
+        J_star_in_platform_zz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_10 : 0;
+        b_c_ups_in_platform_x += leg < LEGS_OF_ups ? ups_platform_point_x : 0;
+        b_c_ups_in_platform_y += leg < LEGS_OF_ups ? ups_platform_point_y : 0;
+        b_c_ups_in_platform_z += leg < LEGS_OF_ups ? ups_platform_point_z : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_ups + platform_mass;
+    const real m_star = m_star_of_legs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = h_star_t + h_star_ups_in_platform_x;
-    const real h_star_in_platform_y = h_star_t_2 + h_star_ups_in_platform_y;
-    const real h_star_in_platform_z = h_star_t_3 + h_star_ups_in_platform_z;
+    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
+    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
+    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xx = J_star_ups_in_platform_xx + platform_inertia_xx -
+    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
         J_star_t_5;
-    const real J_star_in_platform_xy = J_star_ups_in_platform_xy + platform_inertia_xy -
+    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
         J_star_t_6;
-    const real J_star_in_platform_xz = J_star_ups_in_platform_xz + platform_inertia_xz -
+    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
         J_star_t_7;
-    const real J_star_in_platform_yy = J_star_ups_in_platform_yy + platform_inertia_yy -
+    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
         J_star_t_8;
-    const real J_star_in_platform_yz = J_star_ups_in_platform_yz + platform_inertia_yz -
+    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
         J_star_t_9;
-    const real J_star_in_platform_zz = J_star_ups_in_platform_zz + platform_inertia_zz -
+    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
         J_star_t_10;
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
@@ -795,9 +816,10 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
 }
 
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
+#define PADDED(n) (((n) + 4)/4*4)
 INLINE size_t stride_of(size_t n, size_t w)
 {
-    return w == 1 ? (n + 4)/4*4 : n + 1;
+    return w == 1 ? PADDED(n) : n + 1;
 }
 
 INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
@@ -1229,7 +1251,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 {
     enum { Q = 0 };
     const real turn[3] = {part*step[Q], part*step[Q + 1], part*step[Q + 2]};
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NV; ++i) {
         const size_t e = i + (i > Q + 2);
         to[e] = X[e] + part*step[i];
     }
@@ -1238,7 +1260,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 816 mul, 567 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
     verdict *t)
 {
@@ -1650,25 +1672,24 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
         const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
         /* (M_aa) rotational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* M_aa_ups_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_M_aa_t_7 : ups_M_aa_t_7;  /* M_aa_ups_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_M_aa_t_8 : ups_M_aa_t_8;  /* M_aa_t */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_M_aa_t_9 : ups_M_aa_t_9;  /* M_aa_ups_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_M_aa_t_10 : ups_M_aa_t_10;  /* M_aa_ups_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_M_aa_t_11 : ups_M_aa_t_11;  /* M_aa_ups_zz */
+        gather(&terms[0*count + k], add, ups_M_aa_t_6);  /* M_aa_xx_of_legs */
+        gather(&terms[1*count + k], add, ups_M_aa_t_7);  /* M_aa_xy_of_legs */
+        gather(&terms[2*count + k], add, ups_M_aa_t_8);  /* M_aa_xz_of_legs */
+        gather(&terms[3*count + k], add, ups_M_aa_t_9);  /* M_aa_yy_of_legs */
+        gather(&terms[4*count + k], add, ups_M_aa_t_10);  /* M_aa_yz_of_legs */
+        gather(&terms[5*count + k], add, ups_M_aa_t_11);  /* M_aa_zz_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[6*count + k] = add ? terms[6*count + k] + ups_Z_a_t : ups_Z_a_t;  /* Z_a_ups_x */
-        terms[7*count + k] = add ? terms[7*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* Z_a_ups_y */
-        terms[8*count + k] = add ? terms[8*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* Z_a_ups_z */
+        gather(&terms[6*count + k], add, ups_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[7*count + k], add, ups_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[8*count + k], add, ups_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[0*count + k] = ups_H_a_3_x;
         o[1*count + k] = ups_H_a_3_y;
         o[2*count + k] = ups_H_a_3_z;
         o[4*count + k] = ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(0.8));
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -1676,9 +1697,9 @@ INLINE void dynamics_place_ups(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
     }
@@ -1690,43 +1711,43 @@ INLINE void dynamics_after(size_t w, const real *s, const real *sums, real *M, r
     for (size_t k = 0; k < w; ++k) {
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[12*w + k];
-        const real M_aa_ups_xx = sums[0*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_ups_xx;
+        const real M_aa_xx_of_legs = sums[0*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[13*w + k];
-        const real M_aa_ups_xy = sums[1*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_ups_xy;
+        const real M_aa_xy_of_legs = sums[1*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[14*w + k];
-        const real M_aa_t = sums[2*w + k];
-        const real M_aa_xz = J_star_xz - M_aa_t;
+        const real M_aa_xz_of_legs = sums[2*w + k];
+        const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
         const real J_star_yy = s[15*w + k];
-        const real M_aa_ups_yy = sums[3*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_ups_yy;
+        const real M_aa_yy_of_legs = sums[3*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
         const real J_star_yz = s[16*w + k];
-        const real M_aa_ups_yz = sums[4*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_ups_yz;
+        const real M_aa_yz_of_legs = sums[4*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[17*w + k];
-        const real M_aa_ups_zz = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_ups_zz;
+        const real M_aa_zz_of_legs = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_ups_x = sums[6*w + k];
+        const real Z_a_x_of_legs = sums[6*w + k];
         const real Z_q_x = s[18*w + k];
-        const real Z_a_x = Z_a_ups_x + Z_q_x;
-        const real Z_a_ups_y = sums[7*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[7*w + k];
         const real Z_q_y = s[19*w + k];
-        const real Z_a_y = Z_a_ups_y + Z_q_y;
-        const real Z_a_ups_z = sums[8*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[8*w + k];
         const real Z_q_z = s[20*w + k];
-        const real Z_a_z = Z_a_ups_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_aa) rotational block of M */
-        M[0*w + k] = M_aa_xx;
-        M[1*w + k] = M_aa_xy;
-        M[3*w + k] = M_aa_xy;
-        M[2*w + k] = M_aa_xz;
-        M[6*w + k] = M_aa_xz;
-        M[4*w + k] = M_aa_yy;
-        M[5*w + k] = M_aa_yz;
-        M[7*w + k] = M_aa_yz;
-        M[8*w + k] = M_aa_zz;
+        M[0*NV*w + k] = M_aa_xx;
+        M[(0*NV + 1)*w + k] = M_aa_xy;
+        M[NV*w + k] = M_aa_xy;
+        M[(0*NV + 2)*w + k] = M_aa_xz;
+        M[2*NV*w + k] = M_aa_xz;
+        M[(NV + 1)*w + k] = M_aa_yy;
+        M[(NV + 2)*w + k] = M_aa_yz;
+        M[(2*NV + 1)*w + k] = M_aa_yz;
+        M[(2*NV + 2)*w + k] = M_aa_zz;
         /* (Z_a) rotational part of Z */
         Z[0*w + k] = Z_a_x;
         Z[1*w + k] = Z_a_y;
@@ -1739,14 +1760,17 @@ INLINE void dynamics_after(size_t w, const real *s, const real *sums, real *M, r
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[21] = {0}, sums[9] = {0}, terms_ups[9*LEGS(3)] = {0}, o_ups[5*LEGS(3)] = {0};
+    real s[21] = {0};
+    real sums[9] = {0};
+    real terms_ups[9*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        dynamics_place_ups(1, LEGS(3), o_ups, leg, leg, H, t);
+    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        dynamics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     dynamics_after(1, s, sums, M, Z, t);
 }
@@ -1754,17 +1778,19 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[21*LANES], sums[9*LANES], o_ups[5*LANES];
+    real s[21*LANES];
+    real sums[9*LANES];
+    real o_ups[5*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 9*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         dynamics_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
         dynamics_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
     dynamics_after(LANES, s, sums, M, Z, t);
 }
 
-/* ---- M: 411 mul, 264 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -1995,16 +2021,15 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_M_aa_t_10 = ups_M_aa_t*ups_q_z + ups_M_aa_t_5*ups_q_x;
         const real ups_M_aa_t_11 = ups_M_aa_t_3*ups_q_x - ups_M_aa_t*ups_q_y;
         /* (M_aa) rotational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* M_aa_ups_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_M_aa_t_7 : ups_M_aa_t_7;  /* M_aa_ups_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_M_aa_t_8 : ups_M_aa_t_8;  /* M_aa_t */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_M_aa_t_9 : ups_M_aa_t_9;  /* M_aa_ups_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_M_aa_t_10 : ups_M_aa_t_10;  /* M_aa_ups_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_M_aa_t_11 : ups_M_aa_t_11;  /* M_aa_ups_zz */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(0.8));
+        gather(&terms[0*count + k], add, ups_M_aa_t_6);  /* M_aa_xx_of_legs */
+        gather(&terms[1*count + k], add, ups_M_aa_t_7);  /* M_aa_xy_of_legs */
+        gather(&terms[2*count + k], add, ups_M_aa_t_8);  /* M_aa_xz_of_legs */
+        gather(&terms[3*count + k], add, ups_M_aa_t_9);  /* M_aa_yy_of_legs */
+        gather(&terms[4*count + k], add, ups_M_aa_t_10);  /* M_aa_yz_of_legs */
+        gather(&terms[5*count + k], add, ups_M_aa_t_11);  /* M_aa_zz_of_legs */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -2020,64 +2045,69 @@ INLINE void M_after(size_t w, const real *s, const real *sums, real *M, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[9*w + k];
-        const real M_aa_ups_xx = sums[0*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_ups_xx;
+        const real M_aa_xx_of_legs = sums[0*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[10*w + k];
-        const real M_aa_ups_xy = sums[1*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_ups_xy;
+        const real M_aa_xy_of_legs = sums[1*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[11*w + k];
-        const real M_aa_t = sums[2*w + k];
-        const real M_aa_xz = J_star_xz - M_aa_t;
+        const real M_aa_xz_of_legs = sums[2*w + k];
+        const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
         const real J_star_yy = s[12*w + k];
-        const real M_aa_ups_yy = sums[3*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_ups_yy;
+        const real M_aa_yy_of_legs = sums[3*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
         const real J_star_yz = s[13*w + k];
-        const real M_aa_ups_yz = sums[4*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_ups_yz;
+        const real M_aa_yz_of_legs = sums[4*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[14*w + k];
-        const real M_aa_ups_zz = sums[5*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_ups_zz;
+        const real M_aa_zz_of_legs = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_aa) rotational block of M */
-        M[0*w + k] = M_aa_xx;
-        M[1*w + k] = M_aa_xy;
-        M[3*w + k] = M_aa_xy;
-        M[2*w + k] = M_aa_xz;
-        M[6*w + k] = M_aa_xz;
-        M[4*w + k] = M_aa_yy;
-        M[5*w + k] = M_aa_yz;
-        M[7*w + k] = M_aa_yz;
-        M[8*w + k] = M_aa_zz;
+        M[0*NV*w + k] = M_aa_xx;
+        M[(0*NV + 1)*w + k] = M_aa_xy;
+        M[NV*w + k] = M_aa_xy;
+        M[(0*NV + 2)*w + k] = M_aa_xz;
+        M[2*NV*w + k] = M_aa_xz;
+        M[(NV + 1)*w + k] = M_aa_yy;
+        M[(NV + 2)*w + k] = M_aa_yz;
+        M[(2*NV + 1)*w + k] = M_aa_yz;
+        M[(2*NV + 2)*w + k] = M_aa_zz;
         t->total[k] += (M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz + M_aa_zz));
     }
 }
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[15] = {0}, sums[6] = {0}, terms_ups[6*LEGS(3)] = {0}, o_ups[1*LEGS(3)] = {0};
+    real s[15] = {0};
+    real sums[6] = {0};
+    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[LEGS(LEGS_OF_ups)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        M_place_ups(1, LEGS(3), o_ups, leg, t);
+    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        M_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     M_after(1, s, sums, M, t);
 }
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[15*LANES], sums[6*LANES], o_ups[1*LANES];
+    real s[15*LANES];
+    real sums[6*LANES];
+    real o_ups[LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         M_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
         M_place_ups(LANES, LANES, o_ups, 0, t);
     }
     M_after(LANES, s, sums, M, t);
 }
 
-/* ---- Z: 513 mul, 372 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
     *t)
 {
@@ -2390,13 +2420,12 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x;
         const real ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y;
         /* (Z_a) rotational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_Z_a_t : ups_Z_a_t;  /* Z_a_ups_x */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* Z_a_ups_y */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* Z_a_ups_z */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(0.8));
+        gather(&terms[0*count + k], add, ups_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[1*count + k], add, ups_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[2*count + k], add, ups_Z_a_t_3);  /* Z_a_z_of_legs */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -2411,15 +2440,15 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_a) rotational part of Z */
-        const real Z_a_ups_x = sums[0*w + k];
+        const real Z_a_x_of_legs = sums[0*w + k];
         const real Z_q_x = s[12*w + k];
-        const real Z_a_x = Z_a_ups_x + Z_q_x;
-        const real Z_a_ups_y = sums[1*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[1*w + k];
         const real Z_q_y = s[13*w + k];
-        const real Z_a_y = Z_a_ups_y + Z_q_y;
-        const real Z_a_ups_z = sums[2*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[2*w + k];
         const real Z_q_z = s[14*w + k];
-        const real Z_a_z = Z_a_ups_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_a) rotational part of Z */
         Z[0*w + k] = Z_a_x;
         Z[1*w + k] = Z_a_y;
@@ -2430,31 +2459,36 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[15] = {0}, sums[3] = {0}, terms_ups[3*LEGS(3)] = {0}, o_ups[1*LEGS(3)] = {0};
+    real s[15] = {0};
+    real sums[3] = {0};
+    real terms_ups[3*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[LEGS(LEGS_OF_ups)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        Z_place_ups(1, LEGS(3), o_ups, leg, t);
+    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        Z_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     Z_after(1, s, sums, Z, t);
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[15*LANES], sums[3*LANES], o_ups[1*LANES];
+    real s[15*LANES];
+    real sums[3*LANES];
+    real o_ups[LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         Z_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
         Z_place_ups(LANES, LANES, o_ups, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
-/* ---- H: 93 mul, 69 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- H ---- */
 INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2573,9 +2607,8 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         o[1*count + k] = ups_H_a_3_y;
         o[2*count + k] = ups_H_a_3_z;
         o[4*count + k] = ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(ups_root_2) > TOLERANCE*R(0.8));
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_2) > LEAST_2);
     }
 }
 
@@ -2583,9 +2616,9 @@ INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
     }
@@ -2593,25 +2626,27 @@ INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[9] = {0}, o_ups[5*LEGS(3)] = {0};
+    real s[9] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     H_before(1, X, s, t);
-    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        H_place_ups(1, LEGS(3), o_ups, leg, leg, H, t);
+    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        H_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
 }
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[9*LANES], o_ups[5*LANES];
+    real s[9*LANES];
+    real o_ups[5*LANES];
     H_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         H_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
         H_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
 }
 
-/* ---- required: 567 mul, 414 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- required ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
     *A, real *s, verdict *t)
 {
@@ -2944,17 +2979,16 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
         const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
         /* (R_a) moment that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_R_a_t : ups_R_a_t;  /* R_a_ups_x */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_R_a_t_2 : ups_R_a_t_2;  /* R_a_ups_y */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_R_a_t_3 : ups_R_a_t_3;  /* R_a_ups_z */
+        gather(&terms[0*count + k], add, ups_R_a_t);  /* R_a_x_of_legs */
+        gather(&terms[1*count + k], add, ups_R_a_t_2);  /* R_a_y_of_legs */
+        gather(&terms[2*count + k], add, ups_R_a_t_3);  /* R_a_z_of_legs */
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[0*count + k] = ups_H_a_3_x;
         o[1*count + k] = ups_H_a_3_y;
         o[2*count + k] = ups_H_a_3_z;
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(0.8));
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -2962,9 +2996,9 @@ INLINE void required_place_ups(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
     }
 }
@@ -2973,15 +3007,15 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_ups_x = sums[0*w + k];
+        const real R_a_x_of_legs = sums[0*w + k];
         const real mu_p_x = s[15*w + k];
-        const real R_a_x = R_a_ups_x + mu_p_x;
-        const real R_a_ups_y = sums[1*w + k];
+        const real R_a_x = R_a_x_of_legs + mu_p_x;
+        const real R_a_y_of_legs = sums[1*w + k];
         const real mu_p_y = s[16*w + k];
-        const real R_a_y = R_a_ups_y + mu_p_y;
-        const real R_a_ups_z = sums[2*w + k];
+        const real R_a_y = R_a_y_of_legs + mu_p_y;
+        const real R_a_z_of_legs = sums[2*w + k];
         const real mu_p_z = s[17*w + k];
-        const real R_a_z = R_a_ups_z + mu_p_z;
+        const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_a) moment that actuators and external wrench must give */
         required[0*w + k] = R_a_x;
         required[1*w + k] = R_a_y;
@@ -2992,14 +3026,17 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[18] = {0}, sums[3] = {0}, terms_ups[3*LEGS(3)] = {0}, o_ups[4*LEGS(3)] = {0};
+    real s[18] = {0};
+    real sums[3] = {0};
+    real terms_ups[3*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[4*LEGS(LEGS_OF_ups)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        required_place_ups(1, LEGS(3), o_ups, leg, leg, H, t);
+    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        required_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     required_after(1, s, sums, required);
 }
@@ -3007,17 +3044,19 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[18*LANES], sums[3*LANES], o_ups[4*LANES];
+    real s[18*LANES];
+    real sums[3*LANES];
+    real o_ups[4*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 3*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         required_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
         required_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
-/* ---- inverse_kinematics: 81 mul, 60 add, 6 div, 6 sqrt, 6 trig, every leg counted ---- */
+/* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3135,8 +3174,8 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg,
         /* (ups-q_3) displacement of joint 3 */
         o[2*count + k] = ups_root_2;
         o[4*count + k] = ups_q_1 + (ups_q_2 + ups_root_2);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1);
     }
 }
 
@@ -3144,7 +3183,7 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t count, const real *o, 
     first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(3*leg)*w + k] = o[0*count + first + k];
+        q[3*leg*w + k] = o[0*count + first + k];
         q[(1 + 3*leg)*w + k] = o[1*count + first + k];
         q[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -3154,25 +3193,27 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[9] = {0}, o_ups[5*LEGS(3)] = {0};
+    real s[9] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        inverse_kinematics_place_ups(1, LEGS(3), o_ups, leg, leg, q, t);
+    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        inverse_kinematics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, q, t);
     }
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[9*LANES], o_ups[5*LANES];
+    real s[9*LANES];
+    real o_ups[5*LANES];
     inverse_kinematics_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         inverse_kinematics_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
         inverse_kinematics_place_ups(LANES, LANES, o_ups, leg, 0, q, t);
     }
 }
 
-/* ---- joint_rates: 171 mul, 105 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates ---- */
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3327,10 +3368,9 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t
         /* (ups-qd_3) rate of joint 3 */
         o[2*count + k] = ups_S_dot_in_axes2_x;
         o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(0.8));
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -3338,7 +3378,7 @@ INLINE void joint_rates_place_ups(size_t w, size_t count, const real *o, size_t 
     real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(3*leg)*w + k] = o[0*count + first + k];
+        qd[3*leg*w + k] = o[0*count + first + k];
         qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
         qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -3348,26 +3388,28 @@ INLINE void joint_rates_place_ups(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[12] = {0}, o_ups[5*LEGS(3)] = {0};
+    real s[12] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_rates_place_ups(1, LEGS(3), o_ups, leg, leg, qd, t);
+    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        joint_rates_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qd, t);
     }
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[12*LANES], o_ups[5*LANES];
+    real s[12*LANES];
+    real o_ups[5*LANES];
     joint_rates_before(LANES, X, V, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         joint_rates_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
         joint_rates_place_ups(LANES, LANES, o_ups, leg, 0, qd, t);
     }
 }
 
-/* ---- joint_accelerations: 282 mul, 168 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations ---- */
 INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
     *s, verdict *t)
 {
@@ -3565,10 +3607,9 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg
         /* (ups-qdd_3) acceleration of joint 3 */
         o[2*count + k] = ups_rel_in_axes2_x;
         o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(0.8));
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -3576,7 +3617,7 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t count, const real *o,
     size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(3*leg)*w + k] = o[0*count + first + k];
+        qdd[3*leg*w + k] = o[0*count + first + k];
         qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
         qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -3587,26 +3628,28 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[15] = {0}, o_ups[5*LEGS(3)] = {0};
+    real s[15] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_accelerations_place_ups(1, LEGS(3), o_ups, leg, leg, qdd, t);
+    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        joint_accelerations_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[15*LANES], o_ups[5*LANES];
+    real s[15*LANES];
+    real o_ups[5*LANES];
     joint_accelerations_before(LANES, X, V, A, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         joint_accelerations_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
         joint_accelerations_place_ups(LANES, LANES, o_ups, leg, 0, qdd, t);
     }
 }
 
-/* ---- legs: 474 mul, 345 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs ---- */
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
     *t)
 {
@@ -3892,39 +3935,39 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, 
         o[3*count + k] = axis_x_ups_axes2_x;
         o[4*count + k] = axis_x_ups_axes2_y;
         o[5*count + k] = axis_x_ups_axes2_z;
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(0.8));
+        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
 INLINE void legs_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o[0*count + first + k];
-        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        leg_force[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        drive[(3*leg)*w + k] = o[3*count + first + k];
-        drive[(1 + 3*leg)*w + k] = o[4*count + first + k];
-        drive[(2 + 3*leg)*w + k] = o[5*count + first + k];
+        leg_force[3*leg*w + k] = o[0*count + first + k];
+        leg_force[(3*leg + 1)*w + k] = o[1*count + first + k];
+        leg_force[(3*leg + 2)*w + k] = o[2*count + first + k];
+        actuator[3*leg*w + k] = o[3*count + first + k];
+        actuator[(3*leg + 1)*w + k] = o[4*count + first + k];
+        actuator[(3*leg + 2)*w + k] = o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
     }
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
-    real s[15] = {0}, o_ups[7*LEGS(3)] = {0};
+    real s[15] = {0};
+    real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     legs_before(1, X, V, A, s, t);
-    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        legs_place_ups(1, LEGS(3), o_ups, leg, leg, leg_force, drive, t);
+    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        legs_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, leg_force, actuator, t);
     }
 }
 
-/* ---- potential: 159 mul, 123 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -4079,9 +4122,9 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
             ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
             ups_potential_t_3*ups_s_2));
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_potential_t_6 : ups_potential_t_6;  /* potential_ups */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1);
     }
 }
 
@@ -4096,9 +4139,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
+        const real potential_of_legs = sums[0*w + k];
         const real potential_t_4 = s[9*w + k];
-        const real potential_ups = sums[0*w + k];
-        const real potential_ = potential_ups - potential_t_4;
+        const real potential_ = potential_of_legs - potential_t_4;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
@@ -4106,19 +4149,22 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[10] = {0}, sums[1] = {0}, terms_ups[1*LEGS(3)] = {0}, o_ups[1*LEGS(3)] = {0};
+    real s[10] = {0};
+    real sums[1] = {0};
+    real terms_ups[LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[LEGS(LEGS_OF_ups)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        potential_place_ups(1, LEGS(3), o_ups, leg, t);
+    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        potential_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     potential_after(1, s, sums, potential);
 }
 
-/* ---- condition: 118 mul, 96 add, 3 div, 13 sqrt, 0 trig, every leg counted ---- */
+/* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
     verdict *t)
 {
@@ -4237,7 +4283,7 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
         const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real ups_pivot_size = magnitude(ups_rho2_1);
         const real ups_pivot_size_2 = magnitude(ups_rho2_2);
         const real ups_pivot_size_3 = magnitude(ups_root_1);
@@ -4258,19 +4304,18 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
             ups_spread_t_3*ups_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_spread_t_4 : ups_spread_t_4;  /* spread_ups */
+        gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[0*count + k] = ups_H_a_3_x;
         o[1*count + k] = ups_H_a_3_y;
         o[2*count + k] = ups_H_a_3_z;
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[3*count + k] = ups_least_pivots;
         o[5*count + k] = (ups_H_a_3_x + ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots);
-        o[4*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(0.8));
+        o[4*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -4278,10 +4323,10 @@ INLINE void condition_place_ups(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        pivots[(leg)*w + k] = o[3*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        pivots[leg*w + k] = o[3*count + first + k];
         t->singular[k] += o[4*count + first + k];
         t->total[k] += o[5*count + first + k];
     }
@@ -4304,15 +4349,18 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[9] = {0}, sums[1] = {0}, terms_ups[1*LEGS(3)] = {0}, o_ups[6*LEGS(3)] = {0};
-    clear(reach, 3);
+    real s[9] = {0};
+    real sums[1] = {0};
+    real terms_ups[LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[6*LEGS(LEGS_OF_ups)] = {0};
+    clear(reach, NL);
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        condition_place_ups(1, LEGS(3), o_ups, leg, leg, H, pivots, t);
+    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        condition_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, pivots, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     condition_after(m, 1, sums, lengths, t);
 }
@@ -4323,109 +4371,109 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, M_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, M_out);
+        refuse(NV*NV, M_out);
     }
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[4*LANES], M[9*LANES];
+    real X_in[NQ*LANES], M[NV*NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
     suspect(&why, code);
-    deliver(9, M, M_out);
+    deliver(NV*NV, M, M_out);
 }
 
 INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
-        check(3, 1, Z_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, Z_out);
+        refuse(NV, Z_out);
     }
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[4*LANES], V_in[3*LANES], Z[3*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
     suspect(&why, code);
-    deliver(3, Z, Z_out);
+    deliver(NV, Z, Z_out);
 }
 
 INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, H_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, H_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[4*LANES], H[9*LANES];
+    real X_in[NQ*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
     suspect(&why, code);
-    deliver(9, H, H_out);
+    deliver(NV*NU, H, H_out);
 }
 
 INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, q_out, why.overflow);
+        check(NJ, 1, q_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, q_out);
+        refuse(NJ, q_out);
     }
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[4*LANES], q[9*LANES];
+    real X_in[NQ*LANES], q[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
     suspect(&why, code);
-    deliver(9, q, q_out);
+    deliver(NJ, q, q_out);
 }
 
 INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -4433,32 +4481,32 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, qd_out, why.overflow);
+        check(NJ, 1, qd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, qd_out);
+        refuse(NJ, qd_out);
     }
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[4*LANES], V_in[3*LANES], qd[9*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
     suspect(&why, code);
-    deliver(9, qd, qd_out);
+    deliver(NJ, qd, qd_out);
 }
 
 INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
@@ -4466,34 +4514,34 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, qdd_out, why.overflow);
+        check(NJ, 1, qdd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, qdd_out);
+        refuse(NJ, qdd_out);
     }
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[4*LANES], V_in[3*LANES], A_in[3*LANES], qdd[9*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
     suspect(&why, code);
-    deliver(9, qdd, qdd_out);
+    deliver(NJ, qdd, qdd_out);
 }
 
 INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
@@ -4501,56 +4549,56 @@ INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     dynamics_run(m, X, V, M_out, Z_out, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, M_out, why.overflow);
-        check(3, 1, Z_out, why.overflow);
-        check(9, 1, H_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, M_out);
-        refuse(3, Z_out);
-        refuse(9, H_out);
+        refuse(NV*NV, M_out);
+        refuse(NV, Z_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[4*LANES], V_in[3*LANES], M[9*LANES], Z[3*LANES], H[9*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     suspect(&why, code);
-    deliver(9, M, M_out);
-    deliver(3, Z, Z_out);
-    deliver(9, H, H_out);
+    deliver(NV*NV, M, M_out);
+    deliver(NV, Z, Z_out);
+    deliver(NV*NU, H, H_out);
 }
 
-INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
+INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
+    real *a, const real *b, real *x, real *unsure, real *total)
 {
     for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(1*stride + 0)*w + k];
-        real a01 = a[(1*stride + 1)*w + k];
-        real a02 = a[(1*stride + 2)*w + k];
-        real b0 = b[1*w + k];
-        real a10 = a[(0)*w + k];
-        real a11 = a[(1)*w + k];
-        real a12 = a[(2)*w + k];
-        real b1 = b[0*w + k];
-        real a20 = a[(2*stride + 0)*w + k];
-        real a21 = a[(2*stride + 1)*w + k];
-        real a22 = a[(2*stride + 2)*w + k];
-        real b2 = b[2*w + k];
+        real a00 = a[(order[0]*stride + 0)*w + k];
+        real a01 = a[(order[0]*stride + 1)*w + k];
+        real a02 = a[(order[0]*stride + 2)*w + k];
+        real b0 = b[order[0]*w + k];
+        real a10 = a[(order[1]*stride + 0)*w + k];
+        real a11 = a[(order[1]*stride + 1)*w + k];
+        real a12 = a[(order[1]*stride + 2)*w + k];
+        real b1 = b[order[1]*w + k];
+        real a20 = a[(order[2]*stride + 0)*w + k];
+        real a21 = a[(order[2]*stride + 1)*w + k];
+        real a22 = a[(order[2]*stride + 2)*w + k];
+        real b2 = b[order[2]*w + k];
         const real f0 = 1/a00;
         const real d1 = a00*a11 - a10*a01;
         const real f1 = a00/d1;
@@ -4565,249 +4613,220 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         a22 -= g21*a12;
         b2 -= g21*b1;
         const real f2 = 1/a22;
-        const real x2 = (b2)*f2;
-        const real x1 = (b1)*f1 - a12*f1*x2;
+        const real x2 = b2*f2;
+        const real x1 = b1*f1 - a12*f1*x2;
         const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
         x[0*w + k] = x0;
         x[1*w + k] = x1;
         x[2*w + k] = x2;
         total[k] += x0 + (x1 + x2);
-        const real most0 = larger(magnitude(g10), larger(magnitude(g20), magnitude(g21)));
-        const real most1 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f2)));
-        unsure[k] += UNLESS(most0 <= R(10)) + UNLESS(most1 <= R(4000)) + UNLESS(is_finite(a00 + d1
-            + a22));
+        const real most0 = larger(magnitude(g10)*(sizes[0]/sizes[1]),
+            magnitude(g20)*(sizes[0]/sizes[2]));
+        const real most1 = magnitude(g21)*(sizes[1]/sizes[2]);
+        unsure[k] += UNLESS(larger(magnitude(f0)*sizes[0], larger(magnitude(f1)*sizes[1],
+            magnitude(f2)*sizes[2])) <= R(1000));
+        unsure[k] += UNLESS(larger(most0, most1) <= R(10));
+        unsure[k] += UNLESS(is_finite(a00 + d1 + a22));
     }
 }
 
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real wrench_in[3], required[3] = {0}, H[9] = {0}, subtract_2[3] = {0}, unsure_4[1] = {0},
-        work[12];
+    static const size_t order_tau[] = {1, 0, 2};
+    static const real sizes_tau[] = {0.25, 0.25, 0.25};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(1, 3, H, subtract_2, tau_out, unsure_4, why.total);
-    if (unsure_4[0] > 0) {
-        set_matrix(3, 1, H, work);
-        solve_apart(3, subtract_2, work, tau_out, why.singular);
-        check(3, 1, tau_out, why.overflow);
+    eliminate_3(1, NV, order_tau, sizes_tau, H, subtract_1, tau_out, unsure_tau, why.total);
+    if (unsure_tau[0] > 0) {
+        set_matrix(NV, 1, H, work);
+        solve_apart(NV, subtract_1, work, tau_out, why.singular);
+        check(NV, 1, tau_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
-        check(3, 1, tau_out, why.overflow);
+        check(NU, 1, tau_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, tau_out);
+        refuse(NU, tau_out);
     }
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[4*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES], required[3*LANES],
-        H[9*LANES], subtract_2[3*LANES], tau[3*LANES];
+    static const size_t order_tau[] = {1, 0, 2};
+    static const real sizes_tau[] = {0.25, 0.25, 0.25};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
+        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
-    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(LANES, 3, H, subtract_2, tau, why.singular, why.total);
+    eliminate_3(LANES, NV, order_tau, sizes_tau, H, subtract_1, tau, why.singular, why.total);
     suspect(&why, code);
-    deliver(3, tau, tau_out);
-}
-
-INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
-{
-    for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(0)*w + k];
-        real a01 = a[(1)*w + k];
-        real a02 = a[(2)*w + k];
-        real b0 = b[0*w + k];
-        real a10 = a[(1*stride + 0)*w + k];
-        real a11 = a[(1*stride + 1)*w + k];
-        real a12 = a[(1*stride + 2)*w + k];
-        real b1 = b[1*w + k];
-        real a20 = a[(2*stride + 0)*w + k];
-        real a21 = a[(2*stride + 1)*w + k];
-        real a22 = a[(2*stride + 2)*w + k];
-        real b2 = b[2*w + k];
-        const real f0 = 1/a00;
-        const real d1 = a00*a11 - a10*a01;
-        const real f1 = a00/d1;
-        const real g10 = a10*f0;
-        a12 -= g10*a02;
-        b1 -= g10*b0;
-        const real g20 = a20*f0;
-        a21 -= g20*a01;
-        a22 -= g20*a02;
-        b2 -= g20*b0;
-        const real g21 = a21*f1;
-        a22 -= g21*a12;
-        b2 -= g21*b1;
-        const real f2 = 1/a22;
-        const real x2 = (b2)*f2;
-        const real x1 = (b1)*f1 - a12*f1*x2;
-        const real x0 = (b0 - a02*x2)*f0 - a01*f0*x1;
-        x[0*w + k] = x0;
-        x[1*w + k] = x1;
-        x[2*w + k] = x2;
-        total[k] += x0 + (x1 + x2);
-        const real most0 = larger(magnitude(g10), larger(magnitude(g20), magnitude(g21)));
-        const real most1 = larger(magnitude(f0), larger(magnitude(f1), magnitude(f2)));
-        unsure[k] += UNLESS(most0 <= R(10)) + UNLESS(most1 <= R(1000)) + UNLESS(is_finite(a00 + d1
-            + a22));
-    }
+    deliver(NU, tau, tau_out);
 }
 
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, int *code)
 {
-    real wrench_in[3], M[9] = {0}, Z[3] = {0}, H[9] = {0}, times_1[3] = {0}, add_3[3] = {0},
-        subtract_4[3] = {0}, unsure_7[1] = {0}, work[12];
+    static const size_t order_A[] = {0, 1, 2};
+    static const real sizes_A[] = {1.0, 1.0, 1.0};
+    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
+        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3) + total(tau, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
-    product(3, 3, 1, 1, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, 1, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    eliminate_1(1, 3, M, subtract_4, A_out, unsure_7, why.total);
-    if (unsure_7[0] > 0) {
-        set_matrix(3, 1, M, work);
-        solve_apart(3, subtract_4, work, A_out, why.singular);
-        check(3, 1, A_out, why.overflow);
+    eliminate_3(1, NV, order_A, sizes_A, M, subtract_1, A_out, unsure_A, why.total);
+    if (unsure_A[0] > 0) {
+        set_matrix(NV, 1, M, work);
+        solve_apart(NV, subtract_1, work, A_out, why.singular);
+        check(NV, 1, A_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
-        check(3, 1, A_out, why.overflow);
+        check(NV, 1, A_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(3, A_out);
+        refuse(NV, A_out);
     }
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[4*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES], M[9*LANES], Z[3*LANES],
-        H[9*LANES], times_1[3*LANES] = {0}, add_3[3*LANES], subtract_4[3*LANES], A[3*LANES];
+    static const size_t order_A[] = {0, 1, 2};
+    static const real sizes_A[] = {1.0, 1.0, 1.0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
+        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
+        A[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    tau = side_by_side(3, tau, tau_in, why.total);
-    wrench = optional_side_by_side(3, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    product(3, 3, 1, LANES, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 3*LANES; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    eliminate_1(LANES, 3, M, subtract_4, A, why.singular, why.total);
+    eliminate_3(LANES, NV, order_A, sizes_A, M, subtract_1, A, why.singular, why.total);
     suspect(&why, code);
-    deliver(3, A, A_out);
+    deliver(NV, A, A_out);
 }
 
 INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(3, 1, A, why.invalid);
+    check(NV, 1, A, why.invalid);
     const real *const completed = A;
-    check(3, 1, completed, why.overflow);
+    check(NV, 1, completed, why.overflow);
     judge(&why, code);
-    copy(3, completed, completed_out);
+    copy(NV, completed, completed_out);
     if (*code != OK) {
-        refuse(3, completed_out);
+        refuse(NV, completed_out);
     }
 }
 
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2};
-    real wrench_in[3], required[3] = {0}, H[9] = {0}, subtract_2[3] = {0}, solve_3[3] = {0},
-        unsure_5[1] = {0}, leg_force[9] = {0}, drive[9] = {0}, forces[9] = {0}, work[12];
+    static const size_t order_solve_1[] = {1, 0, 2};
+    static const real sizes_solve_1[] = {0.25, 0.25, 0.25};
+    static const size_t places_forces[] = {0, 1, 2};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] = {0},
+        unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0},
+        work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(3, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    eliminate_0(1, 3, H, subtract_2, solve_3, unsure_5, why.total);
-    if (unsure_5[0] > 0) {
-        set_matrix(3, 1, H, work);
-        solve_apart(3, subtract_2, work, solve_3, why.singular);
-        check(3, 1, solve_3, why.overflow);
+    eliminate_3(1, NV, order_solve_1, sizes_solve_1, H, subtract_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NV, 1, H, work);
+        solve_apart(NV, subtract_1, work, solve_1, why.singular);
+        check(NV, 1, solve_1, why.overflow);
     }
-    legs_run(m, X, V, A, leg_force, drive, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    legs_run(m, X, V, A, leg_force, actuator, &why);
+    for (size_t i = 0; i < NL*NL; ++i) {
         forces[i] = leg_force[i];
     }
-    add_forces(3, 3, 1, places_0, solve_3, drive, forces);
-    check(9, 1, forces, why.overflow);
+    add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
+    check(NL*NL, 1, forces, why.overflow);
     judge(&why, code);
-    copy(9, forces, forces_out);
+    copy(NL*NL, forces, forces_out);
     if (*code != OK) {
-        refuse(9, forces_out);
+        refuse(NL*NL, forces_out);
     }
 }
 
 INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
-    real M[9] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
-    half_form(3, 1, V, M, kinetic);
+    half_form(NV, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
@@ -4823,12 +4842,12 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
 INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2};
-    real length_in[1], H[9] = {0}, lengths[2] = {0}, legs[3] = {0}, reach[3] = {0}, choose_length_1[1]
-        = {0}, divide_rows_2[9] = {0}, sigma[3] = {0};
+    static const size_t places_divide_rows_1[] = {0, 1, 2};
+    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -4836,46 +4855,45 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 9; ++i) {
-        divide_rows_2[i] = H[i];
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
     }
-    divide_rows(3, 3, 1, places_0, choose_length_1, divide_rows_2);
-    singular_values(3, 3, divide_rows_2, sigma);
+    divide_rows(NV, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(3, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(3, 1, sigma, why.overflow);
+    check(NV, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(3, sigma, sigma_out);
-    copy(3, legs, legs_out);
+    copy(NV, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(3, sigma_out);
-        refuse(3, legs_out);
+        refuse(NV, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real q[9] = {0}, take_1[3] = {0}, gap[3] = {0};
+    real q[NJ] = {0}, take_1[3] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(q_actuated, 3);
+    const real total_in = total(X, NQ) + total(q_actuated, NU);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, q_actuated, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(3, 1, places_0, q, take_1);
-    for (size_t i = 0; i < 3; ++i) {
+    take(3, 1, spherical_3ups_ACTUATED, q, take_1);
+    for (size_t i = 0; i < NU; ++i) {
         gap[i] = q_actuated[i] - take_1[i];
     }
-    check(3, 1, gap, why.overflow);
+    check(NU, 1, gap, why.overflow);
     judge(&why, code);
-    copy(3, gap, gap_out);
+    copy(NU, gap, gap_out);
     if (*code != OK) {
-        refuse(3, gap_out);
+        refuse(NU, gap_out);
     }
 }
 
@@ -4883,23 +4901,23 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
 {
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
-        check(9, 1, slope_out, why.overflow);
+        check(NV*NU, 1, slope_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(9, slope_out);
+        refuse(NV*NU, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
-    enum { N = 3, NV = 3, TRIALS = 12 };
+    enum { N = NU, TRIALS = 12 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[4] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     mismatch_one(m, found, q_actuated, gap, &code);
@@ -4942,30 +4960,30 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
-    real X[4] = {0};
+    real X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(q_actuated, 3) + total(X0, 4);
+    const real total_in = total(q_actuated, NU) + total(X0, NQ);
     if (!is_finite(total_in)) {
-        check(3, 1, q_actuated, why.invalid);
-        check(4, 1, X0, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
+        check(NQ, 1, X0, why.invalid);
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(4, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(4, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(4, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
-    real subtract_1[3] = {0};
+    real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
-    check(3, 1, V, why.invalid);
-    for (size_t i = 0; i < 3; ++i) {
+    check(NV, 1, V, why.invalid);
+    for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
@@ -4980,85 +4998,85 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
     *code)
 {
-    real M[9] = {0}, momentum[3] = {0};
+    real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
-    product(3, 3, 1, 1, M, V, momentum);
-    check(3, 1, momentum, why.overflow);
+    product(NV, NV, 1, 1, M, V, momentum);
+    check(NV, 1, momentum, why.overflow);
     judge(&why, code);
-    copy(3, momentum, momentum_out);
+    copy(NV, momentum, momentum_out);
     if (*code != OK) {
-        refuse(3, momentum_out);
+        refuse(NV, momentum_out);
     }
 }
 
 INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
     int *code)
 {
-    real X_in[4*LANES], V_in[3*LANES], M[9*LANES], momentum[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     M_run_lanes(m, X, M, &why);
-    product(3, 3, 1, LANES, M, V, momentum);
-    add_up(3, momentum, why.total);
+    product(NV, NV, 1, LANES, M, V, momentum);
+    add_up(NV, momentum, why.total);
     suspect(&why, code);
-    deliver(3, momentum, momentum_out);
+    deliver(NV, momentum, momentum_out);
 }
 
 INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real q[9] = {0}, margins[9] = {0};
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    real q[NJ] = {0}, margins[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
-    unlimited(9, 9, 1, places_0, margins, why.overflow);
+    unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     judge(&why, code);
-    copy(9, margins, margins_out);
+    copy(NJ, margins, margins_out);
     if (*code != OK) {
-        refuse(9, margins_out);
+        refuse(NJ, margins_out);
     }
 }
 
 INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real X_in[4*LANES], q[9*LANES], margins[9*LANES];
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 9*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         margins[i] = q[i];
     }
-    unlimited(9, 9, LANES, places_0, margins, why.invalid);
+    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
     suspect(&why, code);
-    deliver(9, margins, margins_out);
+    deliver(NJ, margins, margins_out);
 }
 
 INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real q[9] = {0}, subtract_1[9] = {0}, within[1] = {0};
+    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 9; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(9, 1, subtract_1, within, why.overflow);
+    not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     judge(&why, code);
     copy(1, within, within_out);
@@ -5069,15 +5087,15 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
 
 INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real X_in[4*LANES], q[9*LANES], subtract_1[9*LANES], within[1*LANES] = {0};
+    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 9*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(9, LANES, subtract_1, within, why.invalid);
+    not_negative(NJ, LANES, subtract_1, within, why.invalid);
     add_up(1, within, why.total);
     suspect(&why, code);
     deliver(1, within, within_out);
@@ -5085,129 +5103,123 @@ INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_o
 
 INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real q_of_inverse_kinematics[9] = {0}, q[3] = {0};
+    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
-    take(3, 1, places_0, q_of_inverse_kinematics, q);
-    check(3, 1, q, why.overflow);
+    take(NU, 1, spherical_3ups_ACTUATED, q_of_inverse_kinematics, q);
+    check(NU, 1, q, why.overflow);
     judge(&why, code);
-    copy(3, q, q_out);
+    copy(NU, q, q_out);
     if (*code != OK) {
-        refuse(3, q_out);
+        refuse(NU, q_out);
     }
 }
 
 INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real X_in[4*LANES], q_of_inverse_kinematics[9*LANES], q[3*LANES] = {0};
+    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(3, 1*LANES, places_0, q_of_inverse_kinematics, q);
-    add_up(3, q, why.total);
+    take(NU, LANES, spherical_3ups_ACTUATED, q_of_inverse_kinematics, q);
+    add_up(NU, q, why.total);
     suspect(&why, code);
-    deliver(3, q, q_out);
+    deliver(NU, q, q_out);
 }
 
 INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real qd_of_joint_rates[9] = {0}, qd[3] = {0};
+    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
-    take(3, 1, places_0, qd_of_joint_rates, qd);
-    check(3, 1, qd, why.overflow);
+    take(NU, 1, spherical_3ups_ACTUATED, qd_of_joint_rates, qd);
+    check(NU, 1, qd, why.overflow);
     judge(&why, code);
-    copy(3, qd, qd_out);
+    copy(NU, qd, qd_out);
     if (*code != OK) {
-        refuse(3, qd_out);
+        refuse(NU, qd_out);
     }
 }
 
 INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
     int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real X_in[4*LANES], V_in[3*LANES], qd_of_joint_rates[9*LANES], qd[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(3, 1*LANES, places_0, qd_of_joint_rates, qd);
-    add_up(3, qd, why.total);
+    take(NU, LANES, spherical_3ups_ACTUATED, qd_of_joint_rates, qd);
+    add_up(NU, qd, why.total);
     suspect(&why, code);
-    deliver(3, qd, qd_out);
+    deliver(NU, qd, qd_out);
 }
 
 INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real qdd_of_joint_accelerations[9] = {0}, qdd[3] = {0};
+    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3) + total(A, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1, places_0, qdd_of_joint_accelerations, qdd);
-    check(3, 1, qdd, why.overflow);
+    take(NU, 1, spherical_3ups_ACTUATED, qdd_of_joint_accelerations, qdd);
+    check(NU, 1, qdd, why.overflow);
     judge(&why, code);
-    copy(3, qdd, qdd_out);
+    copy(NU, qdd, qdd_out);
     if (*code != OK) {
-        refuse(3, qdd_out);
+        refuse(NU, qdd_out);
     }
 }
 
 INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real X_in[4*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of_joint_accelerations[9*LANES],
-        qdd[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
+        qdd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    A = side_by_side(3, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
-    add_up(3, qdd, why.total);
+    take(NU, LANES, spherical_3ups_ACTUATED, qdd_of_joint_accelerations, qdd);
+    add_up(NU, qdd, why.total);
     suspect(&why, code);
-    deliver(3, qdd, qdd_out);
+    deliver(NU, qdd, qdd_out);
 }
 
 INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real H[9] = {0}, times_1[3] = {0}, power[1] = {0};
+    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3) + total(tau, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
-        check(3, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
     H_run(m, X, H, &why);
-    product(3, 3, 1, 1, H, tau, times_1);
-    inner(3, 1, times_1, V, power);
+    product(NV, NU, 1, 1, H, tau, times_1);
+    inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     judge(&why, code);
     copy(1, power, power_out);
@@ -5219,16 +5231,16 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
 INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real X_in[4*LANES], V_in[3*LANES], tau_in[3*LANES], H[9*LANES], times_1[3*LANES] = {0},
-        power[1*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        power[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(4, X, X_in, why.total);
-    V = side_by_side(3, V, V_in, why.total);
-    tau = side_by_side(3, tau, tau_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
     H_run_lanes(m, X, H, &why);
-    product(3, 3, 1, LANES, H, tau, times_1);
-    inner(3, LANES, times_1, V, power);
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    inner(NV, LANES, times_1, V, power);
     add_up(1, power, why.total);
     suspect(&why, code);
     deliver(1, power, power_out);
@@ -5239,7 +5251,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     real R[9] = {0};
     verdict why;
     start(1, &why);
-    check(4, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     const real *const take_1 = X;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
@@ -5252,126 +5264,126 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
 
 INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_2[4] = {0};
+    real quaternion_of_rotation_1[4] = {0}, join_1[4] = {0};
     verdict why;
     start(1, &why);
     check(9, 1, R, why.invalid);
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 0, 4, t, quaternion_of_rotation_1, join_2);
-    const real *const X = join_2;
-    check(4, 1, X, why.overflow);
+    beside(1, 0, 4, t, quaternion_of_rotation_1, join_1);
+    const real *const X = join_1;
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(4, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(4, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
-    real X_dot[4] = {0};
+    real X_dot[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(V, 3);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     const real *const take_1 = V;
     const real *const take_2 = X;
     quaternion_rate(take_2, take_1, X_dot);
-    check(4, 1, X_dot, why.overflow);
+    check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
-    copy(4, X_dot, X_dot_out);
+    copy(NQ, X_dot, X_dot_out);
     if (*code != OK) {
-        refuse(4, X_dot_out);
+        refuse(NQ, X_dot_out);
     }
 }
 
 INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_2[4] = {0};
+    real quaternion_of_rpy_1[4] = {0}, join_1[4] = {0};
     verdict why;
     start(1, &why);
     check(3, 1, rpy, why.invalid);
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 0, 4, t, quaternion_of_rpy_1, join_2);
-    const real *const X = join_2;
-    check(4, 1, X, why.overflow);
+    beside(1, 0, 4, t, quaternion_of_rpy_1, join_1);
+    const real *const X = join_1;
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(4, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(4, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
-    real X_moved[4] = {0};
+    real X_moved[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 4) + total(step, 3);
+    const real total_in = total(X, NQ) + total(step, NV);
     if (!is_finite(total_in)) {
-        check(4, 1, X, why.invalid);
-        check(3, 1, step, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, step, why.invalid);
     }
     const real *const take_1 = X;
     const real *const take_2 = step;
     turn_quaternion(take_1, take_2, X_moved);
-    check(4, 1, X_moved, why.overflow);
+    check(NQ, 1, X_moved, why.overflow);
     judge(&why, code);
-    copy(4, X_moved, X_moved_out);
+    copy(NQ, X_moved, X_moved_out);
     if (*code != OK) {
-        refuse(4, X_moved_out);
+        refuse(NQ, X_moved_out);
     }
 }
 
 INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
-    real step[3] = {0};
+    real step[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 4) + total(X1, 4);
+    const real total_in = total(X0, NQ) + total(X1, NQ);
     if (!is_finite(total_in)) {
-        check(4, 1, X0, why.invalid);
-        check(4, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
     }
     const real *const take_1 = X0;
     const real *const take_2 = X1;
     turn_between(take_1, take_2, step);
-    check(3, 1, step, why.overflow);
+    check(NV, 1, step, why.overflow);
     judge(&why, code);
-    copy(3, step, step_out);
+    copy(NV, step, step_out);
     if (*code != OK) {
-        refuse(3, step_out);
+        refuse(NV, step_out);
     }
 }
 
 INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    real turn_between_3[3] = {0}, scale_4[3] = {0}, X[4] = {0};
+    real turn_between_1[3] = {0}, scale_1[3] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 4) + total(X1, 4) + total(s, 1);
+    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
     if (!is_finite(total_in)) {
-        check(4, 1, X0, why.invalid);
-        check(4, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
     const real *const take_1 = X0;
     const real *const take_2 = X1;
-    turn_between(take_1, take_2, turn_between_3);
+    turn_between(take_1, take_2, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        scale_4[i] = turn_between_3[i]*s[i%(1)];
+        scale_1[i] = turn_between_1[i]*s[i%(1)];
     }
-    const real *const take_5 = X0;
-    const real *const take_6 = scale_4;
-    turn_quaternion(take_5, take_6, X);
-    check(4, 1, X, why.overflow);
+    const real *const take_3 = X0;
+    const real *const take_4 = scale_1;
+    turn_quaternion(take_3, take_4, X);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(4, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(4, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -5391,16 +5403,16 @@ size_t spherical_3ups_M_batch(const spherical_3ups_model *model, size_t n, const
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_lanes(model, X + 4*i, M + 9*i, codes);
+        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_M(model, X + 4*(i + k), M + 9*(i + k));
+                codes[k] = spherical_3ups_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_M(model, X + 4*i, M + 9*i);
+        const int code = spherical_3ups_M(model, X + NQ*i, M + NV*NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5420,16 +5432,16 @@ size_t spherical_3ups_Z_batch(const spherical_3ups_model *model, size_t n, const
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_lanes(model, X + 4*i, V + 3*i, Z + 3*i, codes);
+        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_Z(model, X + 4*(i + k), V + 3*(i + k), Z + 3*(i + k));
+                codes[k] = spherical_3ups_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_Z(model, X + 4*i, V + 3*i, Z + 3*i);
+        const int code = spherical_3ups_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5449,16 +5461,16 @@ size_t spherical_3ups_H_batch(const spherical_3ups_model *model, size_t n, const
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_lanes(model, X + 4*i, H + 9*i, codes);
+        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_H(model, X + 4*(i + k), H + 9*(i + k));
+                codes[k] = spherical_3ups_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_H(model, X + 4*i, H + 9*i);
+        const int code = spherical_3ups_H(model, X + NQ*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5478,16 +5490,16 @@ size_t spherical_3ups_inverse_kinematics_batch(const spherical_3ups_model *model
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_lanes(model, X + 4*i, q + 9*i, codes);
+        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_inverse_kinematics(model, X + 4*(i + k), q + 9*(i + k));
+                codes[k] = spherical_3ups_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_inverse_kinematics(model, X + 4*i, q + 9*i);
+        const int code = spherical_3ups_inverse_kinematics(model, X + NQ*i, q + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5507,16 +5519,16 @@ size_t spherical_3ups_joint_rates_batch(const spherical_3ups_model *model, size_
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_lanes(model, X + 4*i, V + 3*i, rates + 9*i, codes);
+        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_joint_rates(model, X + 4*(i + k), V + 3*(i + k), rates + 9*(i + k));
+                codes[k] = spherical_3ups_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_joint_rates(model, X + 4*i, V + 3*i, rates + 9*i);
+        const int code = spherical_3ups_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5538,18 +5550,18 @@ size_t spherical_3ups_joint_accelerations_batch(const spherical_3ups_model *mode
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_lanes(model, X + 4*i, V + 3*i, A + 3*i, accelerations + 9*i, codes);
+        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_joint_accelerations(model, X + 4*(i + k), V + 3*(i + k), A + 3*(i + k),
-                    accelerations + 9*(i + k));
+                codes[k] = spherical_3ups_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
+                    k), accelerations + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_joint_accelerations(model, X + 4*i, V + 3*i, A + 3*i,
-            accelerations + 9*i);
+        const int code = spherical_3ups_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5571,17 +5583,18 @@ size_t spherical_3ups_dynamics_batch(const spherical_3ups_model *model, size_t n
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_lanes(model, X + 4*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
+        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_dynamics(model, X + 4*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i +
-                    k), H + 9*(i + k));
+                codes[k] = spherical_3ups_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
+                    NV*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_dynamics(model, X + 4*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i);
+        const int code = spherical_3ups_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
+            NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5603,19 +5616,19 @@ size_t spherical_3ups_inverse_dynamics_batch(const spherical_3ups_model *model, 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_lanes(model, X + 4*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau + 3*i,
-            codes);
+        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+            NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_inverse_dynamics(model, X + 4*(i + k), V + 3*(i + k), A + 3*(i + k),
-                    wrench ? wrench + 3*(i + k) : NULL, tau + 3*(i + k));
+                codes[k] = spherical_3ups_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_inverse_dynamics(model, X + 4*i, V + 3*i, A + 3*i, wrench ? wrench
-            + 3*i : NULL, tau + 3*i);
+        const int code = spherical_3ups_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
+            wrench + NW*i : NULL, tau + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5637,19 +5650,19 @@ size_t spherical_3ups_forward_dynamics_batch(const spherical_3ups_model *model, 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_lanes(model, X + 4*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A + 3*i,
-            codes);
+        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+            NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_forward_dynamics(model, X + 4*(i + k), V + 3*(i + k), tau + 3*(i + k),
-                    wrench ? wrench + 3*(i + k) : NULL, A + 3*(i + k));
+                codes[k] = spherical_3ups_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i +
+                    k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_forward_dynamics(model, X + 4*i, V + 3*i, tau + 3*i, wrench ?
-            wrench + 3*i : NULL, A + 3*i);
+        const int code = spherical_3ups_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
+            wrench + NW*i : NULL, A + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5674,8 +5687,8 @@ size_t spherical_3ups_complete_acceleration_batch(const spherical_3ups_model *mo
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_complete_acceleration(model, X + 4*i, V + 3*i, A + 3*i, wrench ?
-            wrench + 3*i : NULL, completed + 3*i);
+        const int code = spherical_3ups_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench
+            ? wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5696,8 +5709,8 @@ size_t spherical_3ups_leg_reactions_batch(const spherical_3ups_model *model, siz
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_leg_reactions(model, X + 4*i, V + 3*i, A + 3*i, wrench ? wrench +
-            3*i : NULL, forces + 9*i);
+        const int code = spherical_3ups_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
+            + NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5717,7 +5730,7 @@ size_t spherical_3ups_energy_batch(const spherical_3ups_model *model, size_t n, 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_energy(model, X + 4*i, V + 3*i, kinetic + 1*i, potential + 1*i);
+        const int code = spherical_3ups_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5736,7 +5749,7 @@ size_t spherical_3ups_condition_batch(const spherical_3ups_model *model, size_t 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_condition(model, X + 4*i, sigma + 3*i, legs + 3*i);
+        const int code = spherical_3ups_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5756,7 +5769,7 @@ size_t spherical_3ups_forward_kinematics_batch(const spherical_3ups_model *model
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_forward_kinematics(model, q_actuated + 3*i, X0 + 4*i, X + 4*i);
+        const int code = spherical_3ups_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5778,7 +5791,7 @@ size_t spherical_3ups_dissipation_batch(const spherical_3ups_model *model, size_
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_dissipation(model, X + 4*i, V + 3*i, dissipation + 1*i);
+        const int code = spherical_3ups_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5799,16 +5812,16 @@ size_t spherical_3ups_momentum_batch(const spherical_3ups_model *model, size_t n
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_lanes(model, X + 4*i, V + 3*i, momentum + 3*i, codes);
+        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_momentum(model, X + 4*(i + k), V + 3*(i + k), momentum + 3*(i + k));
+                codes[k] = spherical_3ups_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_momentum(model, X + 4*i, V + 3*i, momentum + 3*i);
+        const int code = spherical_3ups_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5828,16 +5841,16 @@ size_t spherical_3ups_joint_margins_batch(const spherical_3ups_model *model, siz
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_margins_lanes(model, X + 4*i, margins + 9*i, codes);
+        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_joint_margins(model, X + 4*(i + k), margins + 9*(i + k));
+                codes[k] = spherical_3ups_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_joint_margins(model, X + 4*i, margins + 9*i);
+        const int code = spherical_3ups_joint_margins(model, X + NQ*i, margins + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5857,16 +5870,16 @@ size_t spherical_3ups_within_limits_batch(const spherical_3ups_model *model, siz
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        within_limits_lanes(model, X + 4*i, within + 1*i, codes);
+        within_limits_lanes(model, X + NQ*i, within + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_within_limits(model, X + 4*(i + k), within + 1*(i + k));
+                codes[k] = spherical_3ups_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_within_limits(model, X + 4*i, within + 1*i);
+        const int code = spherical_3ups_within_limits(model, X + NQ*i, within + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5886,16 +5899,16 @@ size_t spherical_3ups_actuator_positions_batch(const spherical_3ups_model *model
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_lanes(model, X + 4*i, q + 3*i, codes);
+        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_actuator_positions(model, X + 4*(i + k), q + 3*(i + k));
+                codes[k] = spherical_3ups_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_actuator_positions(model, X + 4*i, q + 3*i);
+        const int code = spherical_3ups_actuator_positions(model, X + NQ*i, q + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5915,16 +5928,17 @@ size_t spherical_3ups_actuator_rates_batch(const spherical_3ups_model *model, si
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_lanes(model, X + 4*i, V + 3*i, rates + 3*i, codes);
+        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_actuator_rates(model, X + 4*(i + k), V + 3*(i + k), rates + 3*(i + k));
+                codes[k] = spherical_3ups_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i +
+                    k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_actuator_rates(model, X + 4*i, V + 3*i, rates + 3*i);
+        const int code = spherical_3ups_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5946,18 +5960,18 @@ size_t spherical_3ups_actuator_accelerations_batch(const spherical_3ups_model *m
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_lanes(model, X + 4*i, V + 3*i, A + 3*i, accelerations + 3*i, codes);
+        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_actuator_accelerations(model, X + 4*(i + k), V + 3*(i + k), A + 3*(i +
-                    k), accelerations + 3*(i + k));
+                codes[k] = spherical_3ups_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i
+                    + k), accelerations + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_actuator_accelerations(model, X + 4*i, V + 3*i, A + 3*i,
-            accelerations + 3*i);
+        const int code = spherical_3ups_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5978,17 +5992,17 @@ size_t spherical_3ups_power_batch(const spherical_3ups_model *model, size_t n, c
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_lanes(model, X + 4*i, V + 3*i, tau + 3*i, power + 1*i, codes);
+        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = spherical_3ups_power(model, X + 4*(i + k), V + 3*(i + k), tau + 3*(i + k), power + 1*(i
-                    + k));
+                codes[k] = spherical_3ups_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power +
+                    (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = spherical_3ups_power(model, X + 4*i, V + 3*i, tau + 3*i, power + 1*i);
+        const int code = spherical_3ups_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6006,7 +6020,7 @@ size_t spherical_3ups_rotation_batch(size_t n, const spherical_3ups_real *X, sph
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_rotation(X + 4*i, R + 9*i);
+        const int code = spherical_3ups_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6025,7 +6039,7 @@ size_t spherical_3ups_pose_batch(size_t n, const spherical_3ups_real *t, const s
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_pose(t ? t + 0*i : NULL, R + 9*i, X + 4*i);
+        const int code = spherical_3ups_pose(t ? t + 0*i : NULL, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6044,7 +6058,7 @@ size_t spherical_3ups_X_dot_batch(size_t n, const spherical_3ups_real *X, const
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_X_dot(X + 4*i, V + 3*i, X_dot + 4*i);
+        const int code = spherical_3ups_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6063,7 +6077,7 @@ size_t spherical_3ups_pose_from_rpy_batch(size_t n, const spherical_3ups_real *t
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_pose_from_rpy(t ? t + 0*i : NULL, rpy + 3*i, X + 4*i);
+        const int code = spherical_3ups_pose_from_rpy(t ? t + 0*i : NULL, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6082,7 +6096,7 @@ size_t spherical_3ups_retract_batch(size_t n, const spherical_3ups_real *X, cons
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_retract(X + 4*i, step + 3*i, X_moved + 4*i);
+        const int code = spherical_3ups_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6101,7 +6115,7 @@ size_t spherical_3ups_difference_batch(size_t n, const spherical_3ups_real *X0, 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_difference(X0 + 4*i, X1 + 4*i, step + 3*i);
+        const int code = spherical_3ups_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6120,7 +6134,7 @@ size_t spherical_3ups_interpolate_batch(size_t n, const spherical_3ups_real *X0,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = spherical_3ups_interpolate(X0 + 4*i, X1 + 4*i, s + 1*i, X + 4*i);
+        const int code = spherical_3ups_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -91,7 +91,7 @@ _SHAPES = {  # of the arrays that functions give
     "qd": (18,),
     "qdd": (18,),
     "leg_force": (6, 3),
-    "drive": (6, 3),
+    "actuator": (6, 3),
     "potential": (1,),
     "lengths": (2,),
     "pivots": (6,),
@@ -126,7 +126,7 @@ _leg_force_ups = (
     [1, 4, 7, 10, 13, 16],
     [2, 5, 8, 11, 14, 17],
 )
-_drive_ups = (
+_actuator_ups = (
     [0, 3, 6, 9, 12, 15],
     [1, 4, 7, 10, 13, 16],
     [2, 5, 8, 11, 14, 17],
@@ -847,50 +847,41 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
+_BLOCK = 4096  # states
 _SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
-    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    """Prepared values of a function, and for each loop over legs (leg, its values): floats."""
     if name not in p._cache:
         shared, loops = p._prepared()[name]
-        rows, columns = [], []
+        rows = []
         for count, values in loops:
-            table = [np.broadcast_to(v, count) for v in values]
-            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
-            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
-        p._cache[name] = tuple(map(float, shared)), rows, columns
+            table = [np.broadcast_to(v, count).tolist() for v in values]
+            rows.append([(leg, tuple(v[leg] for v in table)) for leg in range(count)])
+        p._cache[name] = tuple(map(float, shared)), rows
     return p._cache[name]
-
-
-def _sqrt(x):
-    return x**0.5 if x >= 0.0 else np.nan
 
 
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
-    sqrt = staticmethod(_sqrt)
+    sqrt = staticmethod(math.sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda leg, good: good)
 
-    def __init__(self, p, states):
+    def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)[:2]
+        return _constants(self.p, name)
 
     def zeros(self, name):
         return [0.0] * math.prod(_SHAPES[name])
-
-    def added(self, sums, leg, terms):
-        """Sums over the legs so far."""
-        return [a + b for a, b in zip(sums, terms)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -902,7 +893,7 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, ValueError):
             ok = False
         if ok and all(all(map(math.isfinite, array)) for array in arrays):
             return arrays
@@ -910,54 +901,66 @@ class _Floats:
 
 
 class _Arrays:
-    """Functions of many states at once: arrays (states,), and (legs, states)."""
+    """Functions of many states at once, in arrays (states,).
+
+    Attributes:
+        kept: replays, by their place among those of a block, for other blocks of the same size;
+            None where there are too few states for it to pay to record.
+    """
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
-    def __init__(self, p, states):
-        self.p, self.states = p, states
+    def __init__(self, p, states, kept=None):
+        self.p, self.states, self.kept, self.done = p, states, kept, 0
 
     def constants(self, name):
-        """Shared values, and (all legs, their values) once for each loop."""
-        shared, _, columns = _constants(self.p, name)
-        return shared, columns
+        """Shared values, and (leg, its values) for every leg of each loop.
+
+        As arrays without dimensions: beside arrays they are faster than floats.
+        """
+        if (name, "arrays") not in self.p._cache:
+            shared, loops = _constants(self.p, name)
+            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
+            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
+        return self.p._cache[name, "arrays"]
 
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, legs, good):
-        """Whether it holds for all legs."""
-        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
-
-    def added(self, sums, legs, terms):
-        """Sums over the legs, all at once."""
-        shape = (legs.stop, self.states)
-        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+    def computed(self, function, names, vectors):
+        """Flags and arrays (*shape, states) of a function."""
+        if self.kept is None:
+            flags, arrays = function(self, *vectors)
+        else:
+            if self.done not in self.kept:
+                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+            flags, arrays = self.kept[self.done].run(vectors)
+            self.done += 1
+        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = function(self, *vectors)
-        for a in arrays:
-            ok = ok & np.isfinite(a).all(axis=0)
+        ok, arrays = self.computed(function, names, vectors)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
-                a[:, ~ok] = np.nan
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+                a[..., ~ok] = np.nan
+        return arrays
 
 
 class _Judged(_Arrays):
     """The same, and why a state is impossible."""
 
-    def __init__(self, p, states):
-        super().__init__(p, states)
+    def __init__(self, p, states, kept=None):
+        super().__init__(p, states, kept)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = function(self, *vectors)
+        (valid, reached, clear), arrays = self.computed(function, names, vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            self.failed[code] |= np.logical_not(good)
+        return arrays
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -969,9 +972,9 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _mode(p, states):
+def _mode(p, states, kept=None):
     """The faster way for so many states."""
-    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
@@ -1004,26 +1007,27 @@ def _one(steps, p, given, shapes, read, unbounded):
 
 
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
-    """Results at many states, block by block."""
+    """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
+    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
-    if count > _BLOCK:
+    if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
         # of intermediate arrays from block to block instead of giving its pages back.
         np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
-        for first in range(0, max(count, 1), _BLOCK):
-            block = slice(first, min(first + _BLOCK, count))
+        for stop in (*range(size, count, max(size, 1)), count):
+            block = slice(stop - size, stop)
             states = [_states_last(v[block]) for v in flat]
-            m, good = mode(p, block.stop - first), possible[block]
+            m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
-            _all_finite(compress(states, read), good)
+            good &= _finite(compress(states, read), size)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
+            good &= _finite([np.minimum(a, 0.0) for a in found] if unbounded else found, size)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1040,10 +1044,194 @@ def _states_last(a):
     return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
 
 
-def _all_finite(arrays, good):
-    """Clear the flags of states in which some entry is not finite."""
-    for a in arrays:
-        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+def _finite(arrays, states):
+    """In which states all entries of arrays (*shape, states) are finite."""
+    flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
+    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    if not np.all(good):  # or the sum is too large
+        good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
+    return good
+
+
+def _least(x, y, out):
+    return np.minimum(x, y, out=out)
+
+
+def _both(operation):
+    """An operation of recorded values, and the same with its operands the other way round."""
+    return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
+
+
+class _Recorded:
+    """A value of a function that runs to be recorded."""
+
+    def __init__(self, record, number):
+        self.record, self.number = record, number
+
+    __add__, __radd__ = _both(np.add)
+    __sub__, __rsub__ = _both(np.subtract)
+    __mul__, __rmul__ = _both(np.multiply)
+    __truediv__, __rtruediv__ = _both(np.divide)
+    __and__, __rand__ = _both(np.logical_and)
+    __gt__, __lt__ = _both(np.greater)
+    __ge__, __le__ = _both(np.greater_equal)
+
+    def __neg__(self):
+        return self.record.made(np.negative, self)
+
+    def __abs__(self):
+        return self.record.made(np.absolute, self)
+
+
+class _Record:
+    """The operations of a function, recorded by running it, and where their results stand.
+
+    Results share arrays: what is read for the last time makes room for the next, so that a few
+    arrays do, which stay in the processor's cache.
+
+    Attributes:
+        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
+        steps: (operation, numbers of its operands and of its result).
+        slots: number of a result -> (kind of array or "out", place).
+        counts: how many arrays there are of every kind.
+    """
+
+    def __init__(self, p, function, sizes):
+        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
+        self.constant, self.literals = [], {}
+        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
+        flags, arrays = function(self, *self.inputs)
+        self.is_judged = isinstance(flags, tuple)
+        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes = [len(array) for array in arrays]
+        for place, value in enumerate(v for array in arrays for v in array):
+            self.store(self.number(value), place)
+        self.counts = self.share()
+
+    # ---- the mode in which the function runs ----
+
+    def sqrt(self, x):
+        return self.made(np.sqrt, x)
+
+    def sin(self, x):
+        return self.made(np.sin, x)
+
+    def cos(self, x):
+        return self.made(np.cos, x)
+
+    def atan2(self, y, x):
+        return self.made(np.arctan2, y, x)
+
+    def least(self, x, y):
+        return self.made(_least, x, y)
+
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        self.name, (shared, loops) = name, _constants(self.p, name)
+        shared = self.named(shared)
+        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+
+    # ---- what is recorded ----
+
+    def named(self, values):
+        """Values for constants."""
+        found = [self.value("one") for _ in values]
+        self.constant += [v.number for v in found]
+        return found
+
+    def value(self, kind):
+        self.kinds.append(kind)
+        return _Recorded(self, len(self.kinds) - 1)
+
+    def number(self, value):
+        """Number of a value, which may be a literal."""
+        if isinstance(value, _Recorded):
+            return value.number
+        if value not in self.literals:
+            self.literals[value] = self.value("one").number
+        return self.literals[value]
+
+    def made(self, operation, *operands):
+        """The result of an operation."""
+        numbers = [self.number(operand) for operand in operands]
+        if all(self.kinds[n] == "one" for n in numbers):
+            kind = "one"
+        else:
+            kind = "flag" if operation in _OF_FLAGS else "state"
+        result = self.value(kind)
+        self.steps.append((operation, [*numbers, result.number]))
+        return result
+
+    def store(self, number, place):
+        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
+        if self.kinds[number] != "state" or number in self.slots:
+            copy = self.value("state").number
+            self.steps.append((np.positive, [number, copy]))
+            number = copy
+        self.slots[number] = "out", place
+
+    def share(self):
+        """Give results their places; how many there are of each kind."""
+        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
+        last.update(dict.fromkeys(self.flags, len(self.steps)))
+        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
+        for k, (_, (*operands, result)) in enumerate(self.steps):
+            for n in dict.fromkeys(operands):
+                kind, place = self.slots.get(n, ("given", 0))
+                if last[n] == k and kind in free:
+                    free[kind].append(place)
+            if result not in self.slots:
+                kind = self.kinds[result]
+                if not free[kind]:
+                    free[kind].append(counts[kind])
+                    counts[kind] += 1
+                self.slots[result] = kind, free[kind].pop()
+        return counts
+
+
+_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_RECORDS = {}  # by function
+
+
+class _Replay:
+    """A record on arrays of so many states, which are made once."""
+
+    def __init__(self, p, function, sizes, states):
+        if function not in _RECORDS:
+            _RECORDS[function] = _Record(p, function, sizes)
+        r = _RECORDS[function]
+        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
+        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
+        made["out"] = _rows(sum(r.sizes), states)
+        self.inputs = [_rows(size, states) for size in sizes]
+        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        at = {number: np.array(value) for value, number in r.literals.items()}
+        for values, given in zip(r.inputs, self.inputs):
+            at |= {v.number: row for v, row in zip(values, given)}
+        if r.name is not None:
+            shared, loops = _constants(p, r.name)
+            values = sum((k for legs in loops for _, k in legs), shared)
+            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
+        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
+        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
+        flags = [at[n] for n in r.flags]
+        self.flags = flags if r.is_judged else flags[0]
+
+    def run(self, vectors):
+        """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
+        for rows, vector in zip(self.inputs, vectors):
+            rows[:] = vector
+        for operation, operands in self.steps:
+            operation(*operands)
+        return self.flags, self.arrays
+
+
+def _rows(count, states, kind=float):
+    """Rows of so many states, a cache line apart from each other."""
+    return np.empty((count, states + 8), dtype=kind)[:, :states]
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1453,7 +1641,12 @@ def _run_dynamics(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 27
+    (
+    M_tt_ups_xx, M_tt_xy, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, M_ta_xx, M_ta_ups_xy,
+        M_ta_ups_xz, M_ta_ups_yx, M_ta_t, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_ta_zz,
+        M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz, Z_t_ups_x,
+        Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z,
+    ) = [0.0] * 27
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -1742,17 +1935,42 @@ def _run_dynamics(m, X, V):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
-            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
+            (abs(ups_root_2) > _TOLERANCE * 0.8)
         )
-        sums = m.added(sums, leg, (
-        ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz, ups_Q_zz, ups_M_ta_t_3,
-            ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
-            ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
-            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_x, ups_U_y, ups_U_z,
-            ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
-        ))
+        # (M_tt) translational block of M
+        M_tt_ups_xx += ups_Q_xx
+        M_tt_xy += ups_Q_xy
+        M_tt_xz += ups_Q_xz
+        M_tt_ups_yy += ups_Q_yy
+        M_tt_yz += ups_Q_yz
+        M_tt_ups_zz += ups_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += ups_M_ta_t_3
+        M_ta_ups_xy += ups_M_ta_t_4
+        M_ta_ups_xz += ups_M_ta_t_5
+        M_ta_ups_yx += ups_M_ta_t_6
+        M_ta_t += ups_M_ta_t_8
+        M_ta_ups_yz += ups_M_ta_t_9
+        M_ta_ups_zx += ups_M_ta_t_10
+        M_ta_ups_zy += ups_M_ta_t_11
+        M_ta_zz += ups_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_ups_xx += ups_M_aa_t
+        M_aa_ups_xy += ups_M_aa_t_2
+        M_aa_ups_xz += ups_M_aa_t_3
+        M_aa_ups_yy += ups_M_aa_t_4
+        M_aa_ups_yz += ups_M_aa_t_5
+        M_aa_ups_zz += ups_M_aa_t_6
+        # (Z_t) translational part of Z
+        Z_t_ups_x += ups_U_x
+        Z_t_ups_y += ups_U_y
+        Z_t_ups_z += ups_U_z
+        # (Z_a) rotational part of Z
+        Z_a_ups_x += ups_Z_a_t
+        Z_a_ups_y += ups_Z_a_t_2
+        Z_a_ups_z += ups_Z_a_t_3
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
         out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
@@ -1761,12 +1979,6 @@ def _run_dynamics(m, X, V):
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
-    (
-    M_tt_ups_xx, M_tt_xy, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, M_ta_xx, M_ta_ups_xy,
-        M_ta_ups_xz, M_ta_ups_yx, M_ta_t, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_ta_zz,
-        M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz, Z_t_ups_x,
-        Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_ups_xx + m_star
     M_tt_yy = M_tt_ups_yy + m_star
@@ -1909,7 +2121,11 @@ def _run_M(m, X):
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
-    sums = [0.0] * 21
+    (
+    M_tt_ups_xx, M_tt_xy, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, M_ta_xx, M_ta_ups_xy,
+        M_ta_ups_xz, M_ta_ups_yx, M_ta_t, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_ta_zz,
+        M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
+    ) = [0.0] * 21
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -2051,21 +2267,34 @@ def _run_M(m, X):
         ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
         ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
-            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
+            (abs(ups_root_2) > _TOLERANCE * 0.8)
         )
-        sums = m.added(sums, leg, (
-        ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz, ups_Q_zz, ups_M_ta_t_3,
-            ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
-            ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
-            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6,
-        ))
-    (
-    M_tt_ups_xx, M_tt_xy, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, M_ta_xx, M_ta_ups_xy,
-        M_ta_ups_xz, M_ta_ups_yx, M_ta_t, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_ta_zz,
-        M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
-    ) = sums
+        # (M_tt) translational block of M
+        M_tt_ups_xx += ups_Q_xx
+        M_tt_xy += ups_Q_xy
+        M_tt_xz += ups_Q_xz
+        M_tt_ups_yy += ups_Q_yy
+        M_tt_yz += ups_Q_yz
+        M_tt_ups_zz += ups_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += ups_M_ta_t_3
+        M_ta_ups_xy += ups_M_ta_t_4
+        M_ta_ups_xz += ups_M_ta_t_5
+        M_ta_ups_yx += ups_M_ta_t_6
+        M_ta_t += ups_M_ta_t_8
+        M_ta_ups_yz += ups_M_ta_t_9
+        M_ta_ups_zx += ups_M_ta_t_10
+        M_ta_ups_zy += ups_M_ta_t_11
+        M_ta_zz += ups_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_ups_xx += ups_M_aa_t
+        M_aa_ups_xy += ups_M_aa_t_2
+        M_aa_ups_xz += ups_M_aa_t_3
+        M_aa_ups_yy += ups_M_aa_t_4
+        M_aa_ups_yz += ups_M_aa_t_5
+        M_aa_ups_zz += ups_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_ups_xx + m_star
     M_tt_yy = M_tt_ups_yy + m_star
@@ -2230,7 +2459,7 @@ def _run_Z(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 6
+    Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
@@ -2435,14 +2664,18 @@ def _run_Z(m, X, V):
         ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
         ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
-            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
+            (abs(ups_root_2) > _TOLERANCE * 0.8)
         )
-        sums = m.added(sums, leg, (
-        ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
-        ))
-    Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z = sums
+        # (Z_t) translational part of Z
+        Z_t_ups_x += ups_U_x
+        Z_t_ups_y += ups_U_y
+        Z_t_ups_z += ups_U_z
+        # (Z_a) rotational part of Z
+        Z_a_ups_x += ups_Z_a_t
+        Z_a_ups_y += ups_Z_a_t_2
+        Z_a_ups_z += ups_Z_a_t_3
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_ups_x
     Z_t_y = Z_p_y + Z_t_ups_y
@@ -2552,9 +2785,8 @@ def _run_H(m, X):
         ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
         ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_2) >
-            _TOLERANCE * 0.8))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_2) > _TOLERANCE * 0.8)
         )
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = ups_w_3_x
@@ -2711,7 +2943,7 @@ def _run_required(m, X, V, A):
     mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
     mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
     mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
-    sums = [0.0] * 6
+    R_t_t, R_t_t_2, R_t_t_3, R_a_ups_x, R_a_ups_y, R_a_ups_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
@@ -2923,13 +3155,18 @@ def _run_required(m, X, V, A):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
-            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
+            (abs(ups_root_2) > _TOLERANCE * 0.8)
         )
-        sums = m.added(sums, leg, (
-        ups_c_x, ups_c_y, ups_c_z, ups_R_a_t, ups_R_a_t_2, ups_R_a_t_3,
-        ))
+        # (R_t) force that actuators and external wrench must give
+        R_t_t += ups_c_x
+        R_t_t_2 += ups_c_y
+        R_t_t_3 += ups_c_z
+        # (R_a) moment that actuators and external wrench must give
+        R_a_ups_x += ups_R_a_t
+        R_a_ups_y += ups_R_a_t_2
+        R_a_ups_z += ups_R_a_t_3
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
         out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
@@ -2938,7 +3175,6 @@ def _run_required(m, X, V, A):
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
-    R_t_t, R_t_t_2, R_t_t_3, R_a_ups_x, R_a_ups_y, R_a_ups_z = sums
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t
     R_t_y = f_p_y - R_t_t_2
@@ -3047,8 +3283,8 @@ def _run_inverse_kinematics(m, X):
         inv_ups_root_2 = 1.0/ups_root_2
         ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_in_axes1_z, inv_ups_root_2*ups_root_1)
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (ups-q_1) displacement of joint 1
         out_q[_q_ups[0][leg]] = ups_q_1
@@ -3188,9 +3424,9 @@ def _run_joint_rates(m, X, V):
             axis_x_ups_axes2_x*axis_z_ups_axes2_y))
         )
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
-            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
+            (abs(ups_root_2) > _TOLERANCE * 0.8)
         )
         # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
@@ -3385,9 +3621,9 @@ def _run_joint_accelerations(m, X, V, A):
             ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         )
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
-            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
+            (abs(ups_root_2) > _TOLERANCE * 0.8)
         )
         # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
@@ -3465,7 +3701,7 @@ def _run_legs(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
-    out_drive = m.zeros("drive")
+    out_actuator = m.zeros("actuator")
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
@@ -3673,19 +3909,19 @@ def _run_legs(m, X, V, A):
             axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
-            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
+            (abs(ups_root_2) > _TOLERANCE * 0.8)
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
         out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_y
         out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_z
         # (ups-w_3) reciprocal vector 3
-        out_drive[_drive_ups[0][leg]] = axis_x_ups_axes2_x
-        out_drive[_drive_ups[1][leg]] = axis_x_ups_axes2_y
-        out_drive[_drive_ups[2][leg]] = axis_x_ups_axes2_z
-    return ok, (out_leg_force, out_drive,)
+        out_actuator[_actuator_ups[0][leg]] = axis_x_ups_axes2_x
+        out_actuator[_actuator_ups[1][leg]] = axis_x_ups_axes2_y
+        out_actuator[_actuator_ups[2][leg]] = axis_x_ups_axes2_z
+    return ok, (out_leg_force, out_actuator,)
 
 
 # potential: 309 mul, 234 add, 12 div, 12 sqrt, 0 trig
@@ -3740,7 +3976,7 @@ def _run_potential(m, X):
         R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
         R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
-    sums = [0.0] * 1
+    potential_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
         ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
@@ -3808,13 +4044,11 @@ def _run_potential(m, X):
             ups_potential_t_3*ups_s_2))
         )
         ok = (
-        ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
-        sums = m.added(sums, leg, (
-        ups_potential_t_6,
-        ))
-    potential_ups, = sums
+        # (potential) potential energy
+        potential_ups += ups_potential_t_6
     # (potential) potential energy
     potential = potential_ups - potential_t
     # (potential) potential energy
@@ -3872,7 +4106,7 @@ def _run_condition(m, X):
     out_reach = m.zeros("reach")
     # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
-    sums = [0.0] * 1
+    spread_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
         ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -3919,7 +4153,7 @@ def _run_condition(m, X):
         ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
         ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
         ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
-        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         ups_pivot_size = abs(ups_rho2_1)
         ups_pivot_size_2 = abs(ups_rho2_2)
         ups_pivot_size_3 = abs(ups_root_1)
@@ -3940,13 +4174,12 @@ def _run_condition(m, X):
         ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
-        clear & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        clear & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
-            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
+            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8)
         )
-        sums = m.added(sums, leg, (
-        ups_spread_t_4,
-        ))
+        # (spread) rms distance of the platform points from their centroid
+        spread_ups += ups_spread_t_4
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = ups_w_3_x
         out_H[_H_ups[1][leg]] = ups_w_3_y
@@ -3955,9 +4188,8 @@ def _run_condition(m, X):
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
-        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_ups[0][leg]] = ups_least_pivots
-    spread_ups, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(spread_ups)
     # (spread) rms distance of the platform points from their centroid
@@ -4007,18 +4239,18 @@ def _steps_dynamics(m, X, V):
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    tau = _solve(H, subtract_2)
+    subtract_1 = required - extend_1
+    tau = _solve(H, subtract_1)
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H, tau)
-    extend_2 = wrench
-    add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z
-    A = _solve(M, subtract_4)
+    extend_1 = wrench
+    add_1 = times_1 + extend_1
+    subtract_1 = add_1 - Z
+    A = _solve(M, subtract_1)
     return (A,)
 
 
@@ -4030,10 +4262,10 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    solve_3 = _solve(H, subtract_2)
-    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    forces = _with_forces(leg_force, solve_3, drive, [0, 1, 2, 3, 4, 5])
+    subtract_1 = required - extend_1
+    solve_1 = _solve(H, subtract_1)
+    leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
+    forces = _with_forces(leg_force, solve_1, actuator, [0, 1, 2, 3, 4, 5])
     return (forces,)
 
 
@@ -4054,8 +4286,8 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths, length)
-    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5])
-    sigma = _singular_values(divide_rows_2)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
@@ -4134,24 +4366,24 @@ def _steps_rotation(m, X):
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
-    join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rotation_1))
+    X = join_1
     return (X,)
 
 
 def _steps_X_dot(m, X, V):
     take_1 = V[3:6]
     take_2 = X[3:7]
-    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
-    take_4 = V[0:3]
-    X_dot = np.concatenate((take_4, quaternion_rate_3))
+    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
+    take_3 = V[0:3]
+    X_dot = np.concatenate((take_3, quaternion_rate_1))
     return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
-    join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rpy_1))
+    X = join_1
     return (X,)
 
 
@@ -4160,9 +4392,9 @@ def _steps_retract(m, X, step):
     take_2 = X[3:7]
     take_3 = step[0:3]
     take_4 = step[3:6]
-    turn_quaternion_5 = _turned(take_2, take_4)
-    add_6 = take_1 + take_3
-    X_moved = np.concatenate((add_6, turn_quaternion_5))
+    turn_quaternion_1 = _turned(take_2, take_4)
+    add_1 = take_1 + take_3
+    X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
@@ -4171,9 +4403,9 @@ def _steps_difference(m, X0, X1):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    step = np.concatenate((subtract_6, turn_between_5))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
@@ -4182,17 +4414,17 @@ def _steps_interpolate(m, X0, X1, s):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    join_7 = np.concatenate((subtract_6, turn_between_5))
-    scale_8 = join_7 * s
-    take_9 = X0[0:3]
-    take_10 = X0[3:7]
-    take_11 = scale_8[0:3]
-    take_12 = scale_8[3:6]
-    turn_quaternion_13 = _turned(take_10, take_12)
-    add_14 = take_9 + take_11
-    X = np.concatenate((add_14, turn_quaternion_13))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    join_1 = np.concatenate((subtract_1, turn_between_1))
+    scale_1 = join_1 * s
+    take_5 = X0[0:3]
+    take_6 = X0[3:7]
+    take_7 = scale_1[0:3]
+    take_8 = scale_1[3:6]
+    turn_quaternion_1 = _turned(take_6, take_8)
+    add_1 = take_5 + take_7
+    X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
 

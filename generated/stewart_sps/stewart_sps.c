@@ -54,12 +54,27 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+#define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
+
+/* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
+#define NQ ((size_t)STEWART_SPS_NQ)
+#define NV ((size_t)STEWART_SPS_NV)
+#define NU ((size_t)STEWART_SPS_NU)
+#define NC ((size_t)STEWART_SPS_NC)
+#define NW ((size_t)STEWART_SPS_NW)
+#define NJ ((size_t)STEWART_SPS_NJ)
+#define NL ((size_t)6)
+#define LEGS_OF_sps ((size_t)6)
+
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
 /* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
    epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
+/* Lengths, or squares of them, that are not larger count as zero. */
+#define LEAST_1 (TOLERANCE*TOLERANCE*R(0.6400000000000001))
+#define LEAST_2 (TOLERANCE*R(0.6400000000000001))
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
 
@@ -114,6 +129,12 @@ INLINE void clear(real *x, size_t n)
     for (size_t i = 0; i < n; ++i) {
         x[i] = 0;
     }
+}
+
+/* What a leg adds to a sum, or gives alone. */
+INLINE void gather(real *sum, int add, real term)
+{
+    *sum = add ? *sum + term : term;
 }
 
 INLINE int is_finite(real x)
@@ -457,20 +478,20 @@ static int acceptable(const stewart_sps_params *p)
     ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->sps_base_point[0][0], 18);
-    ok &= all_within(&p->sps_base_frame[0][0][0], 54);
-    ok &= all_rotations(&p->sps_base_frame[0][0][0], 6);
-    ok &= all_within(&p->sps_platform_point[0][0], 18);
-    ok &= all_within(&p->sps_link3_mass[0], 6);
-    ok &= none_negative(&p->sps_link3_mass[0], 6);
-    ok &= all_within(&p->sps_link3_centre_of_mass[0][0], 18);
-    ok &= all_within(&p->sps_link3_inertia[0][0][0], 54);
-    ok &= all_inertias(&p->sps_link3_inertia[0][0][0], 6);
-    ok &= all_within(&p->sps_link4_mass[0], 6);
-    ok &= none_negative(&p->sps_link4_mass[0], 6);
-    ok &= all_within(&p->sps_link4_centre_of_mass[0][0], 18);
-    ok &= all_within(&p->sps_link4_inertia[0][0][0], 54);
-    ok &= all_inertias(&p->sps_link4_inertia[0][0][0], 6);
+    ok &= all_within(&p->sps_base_point[0][0], 3*LEGS_OF_sps);
+    ok &= all_within(&p->sps_base_frame[0][0][0], 9*LEGS_OF_sps);
+    ok &= all_rotations(&p->sps_base_frame[0][0][0], LEGS_OF_sps);
+    ok &= all_within(&p->sps_platform_point[0][0], 3*LEGS_OF_sps);
+    ok &= all_within(&p->sps_link3_mass[0], LEGS_OF_sps);
+    ok &= none_negative(&p->sps_link3_mass[0], LEGS_OF_sps);
+    ok &= all_within(&p->sps_link3_centre_of_mass[0][0], 3*LEGS_OF_sps);
+    ok &= all_within(&p->sps_link3_inertia[0][0][0], 9*LEGS_OF_sps);
+    ok &= all_inertias(&p->sps_link3_inertia[0][0][0], LEGS_OF_sps);
+    ok &= all_within(&p->sps_link4_mass[0], LEGS_OF_sps);
+    ok &= none_negative(&p->sps_link4_mass[0], LEGS_OF_sps);
+    ok &= all_within(&p->sps_link4_centre_of_mass[0][0], 3*LEGS_OF_sps);
+    ok &= all_within(&p->sps_link4_inertia[0][0][0], 9*LEGS_OF_sps);
+    ok &= all_inertias(&p->sps_link4_inertia[0][0][0], LEGS_OF_sps);
     return ok;
 }
 
@@ -480,16 +501,16 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real m_star_sps = 0;
-    real h_star_sps_in_platform_x = 0;
-    real h_star_sps_in_platform_y = 0;
-    real h_star_sps_in_platform_z = 0;
-    real J_star_sps_in_platform_xx = 0;
-    real J_star_sps_in_platform_xy = 0;
-    real J_star_sps_in_platform_xz = 0;
-    real J_star_sps_in_platform_yy = 0;
-    real J_star_sps_in_platform_yz = 0;
-    real J_star_sps_in_platform_zz = 0;
+    real m_star_of_legs = 0;
+    real h_star_in_platform_x_of_legs = 0;
+    real h_star_in_platform_y_of_legs = 0;
+    real h_star_in_platform_z_of_legs = 0;
+    real J_star_in_platform_xx_of_legs = 0;
+    real J_star_in_platform_xy_of_legs = 0;
+    real J_star_in_platform_xz_of_legs = 0;
+    real J_star_in_platform_yy_of_legs = 0;
+    real J_star_in_platform_yz_of_legs = 0;
+    real J_star_in_platform_zz_of_legs = 0;
     real b_c_sps_in_platform_x = 0;
     real b_c_sps_in_platform_y = 0;
     real b_c_sps_in_platform_z = 0;
@@ -530,8 +551,8 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
     model->gravity_z = gravity_z;
     model->legs_size = legs_size;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 8; ++leg) {
-        const size_t own = leg < 6 ? leg : 0;
+    for (size_t leg = 0; leg < FILLED(LEGS_OF_sps); ++leg) {
+        const size_t own = leg < LEGS_OF_sps ? leg : 0;
         const real sps_base_point_x = params->sps_base_point[own][0];
         const real sps_base_point_y = params->sps_base_point[own][1];
         const real sps_base_point_z = params->sps_base_point[own][2];
@@ -681,38 +702,38 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         model->sps_potential_t_4[leg] = sps_potential_t_4;
         model->sps_potential_t_5[leg] = sps_potential_t_5;
         model->sps_potential_t_6[leg] = sps_potential_t_6;
-        m_star_sps += leg < 6 ? sps_link4_mass : 0;
-        h_star_sps_in_platform_x += leg < 6 ? sps_h_star_t : 0;
-        h_star_sps_in_platform_y += leg < 6 ? sps_h_star_t_2 : 0;
-        h_star_sps_in_platform_z += leg < 6 ? sps_h_star_t_3 : 0;
-        J_star_sps_in_platform_xx += leg < 6 ? -sps_J_star_t_5 : 0;
-        J_star_sps_in_platform_xy += leg < 6 ? -sps_J_star_t_6 : 0;
-        J_star_sps_in_platform_xz += leg < 6 ? -sps_J_star_t_7 : 0;
-        J_star_sps_in_platform_yy += leg < 6 ? -sps_J_star_t_8 : 0;
-        J_star_sps_in_platform_yz += leg < 6 ? -sps_J_star_t_9 : 0;
-        J_star_sps_in_platform_zz += leg < 6 ? -sps_J_star_t_10 : 0;
-        b_c_sps_in_platform_x += leg < 6 ? sps_platform_point_x : 0;
-        b_c_sps_in_platform_y += leg < 6 ? sps_platform_point_y : 0;
-        b_c_sps_in_platform_z += leg < 6 ? sps_platform_point_z : 0;
+        m_star_of_legs += leg < LEGS_OF_sps ? sps_link4_mass : 0;
+        h_star_in_platform_x_of_legs += leg < LEGS_OF_sps ? sps_h_star_t : 0;
+        h_star_in_platform_y_of_legs += leg < LEGS_OF_sps ? sps_h_star_t_2 : 0;
+        h_star_in_platform_z_of_legs += leg < LEGS_OF_sps ? sps_h_star_t_3 : 0;
+        J_star_in_platform_xx_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_5 : 0;
+        J_star_in_platform_xy_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_6 : 0;
+        J_star_in_platform_xz_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_7 : 0;
+        J_star_in_platform_yy_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_8 : 0;
+        J_star_in_platform_yz_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_9 : 0;
+        J_star_in_platform_zz_of_legs += leg < LEGS_OF_sps ? -sps_J_star_t_10 : 0;
+        b_c_sps_in_platform_x += leg < LEGS_OF_sps ? sps_platform_point_x : 0;
+        b_c_sps_in_platform_y += leg < LEGS_OF_sps ? sps_platform_point_y : 0;
+        b_c_sps_in_platform_z += leg < LEGS_OF_sps ? sps_platform_point_z : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_sps + platform_mass;
+    const real m_star = m_star_of_legs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = h_star_sps_in_platform_x + h_star_t;
-    const real h_star_in_platform_y = h_star_sps_in_platform_y + h_star_t_2;
-    const real h_star_in_platform_z = h_star_sps_in_platform_z + h_star_t_3;
+    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
+    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
+    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xx = J_star_sps_in_platform_xx + platform_inertia_xx -
+    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
         J_star_t_5;
-    const real J_star_in_platform_xy = J_star_sps_in_platform_xy + platform_inertia_xy -
+    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
         J_star_t_6;
-    const real J_star_in_platform_xz = J_star_sps_in_platform_xz + platform_inertia_xz -
+    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
         J_star_t_7;
-    const real J_star_in_platform_yy = J_star_sps_in_platform_yy + platform_inertia_yy -
+    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
         J_star_t_8;
-    const real J_star_in_platform_yz = J_star_sps_in_platform_yz + platform_inertia_yz -
+    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
         J_star_t_9;
-    const real J_star_in_platform_zz = J_star_sps_in_platform_zz + platform_inertia_zz -
+    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
         J_star_t_10;
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
@@ -907,9 +928,10 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 }
 
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
+#define PADDED(n) (((n) + 4)/4*4)
 INLINE size_t stride_of(size_t n, size_t w)
 {
-    return w == 1 ? (n + 4)/4*4 : n + 1;
+    return w == 1 ? PADDED(n) : n + 1;
 }
 
 INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
@@ -1375,7 +1397,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 {
     enum { Q = 3 };
     const real turn[3] = {part*step[Q], part*step[Q + 1], part*step[Q + 2]};
-    for (size_t i = 0; i < 12; ++i) {
+    for (size_t i = 0; i < NV; ++i) {
         const size_t e = i + (i > Q + 2);
         to[e] = X[e] + part*step[i];
     }
@@ -1384,7 +1406,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 2175 mul, 1605 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
     verdict *t)
 {
@@ -1591,7 +1613,7 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         const real t_z = s[2*w + j];
         const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
         /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
         const real sps_c_3 = -sine(sps_y_3_extra);
         /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
         const real sps_s_3 = cosine(sps_y_3_extra);
@@ -1702,7 +1724,7 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
         const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
         /* (sps-omega_3) angular velocity of link 3 */
-        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
         const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
         /* (sps-W_3) centripetal tensor of link 3 */
         const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
@@ -1869,7 +1891,7 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         const real sps_Gamma_1_o = sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
             sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y + sps_mu_3_o_in_axes3_z*sps_s_2;
         /* (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real sps_d_G_in_axes3_xz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_x +
             sps_d_Gamma_2_in_axes3_z*sps_w_2_in_axes3_x;
         const real sps_d_G_in_axes3_yz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_y -
@@ -1929,7 +1951,7 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         const real sps_U_z = sps_phi_4_o_in_axes3_z*sps_w_4_z -
             axis_x_sps_axes3_z*sps_c_o_in_axes3_x - axis_y_sps_axes3_z*sps_c_o_in_axes3_y;
         /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 3 */
+           degree of freedom of joint 3 */
         const real sps_d_P_3_x = axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx +
             axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy;
         const real sps_d_P_3_y = axis_x_sps_axes3_y*sps_d_mu_3_in_axes3_zx +
@@ -1969,42 +1991,42 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
         const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + sps_Q_xx : sps_Q_xx;  /* M_tt_sps_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + sps_Q_xy : sps_Q_xy;  /* M_tt_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + sps_Q_xz : sps_Q_xz;  /* M_tt_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + sps_Q_yy : sps_Q_yy;  /* M_tt_sps_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + sps_Q_yz : sps_Q_yz;  /* M_tt_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + sps_Q_zz : sps_Q_zz;  /* M_tt_sps_zz */
+        gather(&terms[0*count + k], add, sps_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, sps_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, sps_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, sps_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, sps_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, sps_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + sps_M_ta_t_3 : sps_M_ta_t_3;  /* M_ta_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + sps_M_ta_t_4 : sps_M_ta_t_4;  /* M_ta_sps_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + sps_M_ta_t_5 : sps_M_ta_t_5;  /* M_ta_sps_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + sps_M_ta_t_6 : sps_M_ta_t_6;  /* M_ta_sps_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + sps_M_ta_t_8 : sps_M_ta_t_8;  /* M_ta_t */
-        terms[11*count + k] = add ? terms[11*count + k] + sps_M_ta_t_9 : sps_M_ta_t_9;  /* M_ta_sps_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + sps_M_ta_t_10 : sps_M_ta_t_10;  /* M_ta_sps_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + sps_M_ta_t_11 : sps_M_ta_t_11;  /* M_ta_sps_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + sps_M_ta_t_12 : sps_M_ta_t_12;  /* M_ta_zz */
+        gather(&terms[6*count + k], add, sps_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, sps_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, sps_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, sps_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, sps_M_ta_t_8);  /* M_ta_t */
+        gather(&terms[11*count + k], add, sps_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, sps_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, sps_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, sps_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + sps_M_aa_t : sps_M_aa_t;  /* M_aa_sps_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + sps_M_aa_t_2 : sps_M_aa_t_2;  /* M_aa_sps_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + sps_M_aa_t_3 : sps_M_aa_t_3;  /* M_aa_sps_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + sps_M_aa_t_4 : sps_M_aa_t_4;  /* M_aa_sps_yy */
-        terms[19*count + k] = add ? terms[19*count + k] + sps_M_aa_t_5 : sps_M_aa_t_5;  /* M_aa_sps_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + sps_M_aa_t_6 : sps_M_aa_t_6;  /* M_aa_sps_zz */
+        gather(&terms[15*count + k], add, sps_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, sps_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, sps_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, sps_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, sps_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, sps_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[21*count + k] = add ? terms[21*count + k] + sps_U_x : sps_U_x;  /* Z_t_sps_x */
-        terms[22*count + k] = add ? terms[22*count + k] + sps_U_y : sps_U_y;  /* Z_t_sps_y */
-        terms[23*count + k] = add ? terms[23*count + k] + sps_U_z : sps_U_z;  /* Z_t_sps_z */
+        gather(&terms[21*count + k], add, sps_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[22*count + k], add, sps_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[23*count + k], add, sps_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[24*count + k] = add ? terms[24*count + k] + sps_Z_a_t : sps_Z_a_t;  /* Z_a_sps_x */
-        terms[25*count + k] = add ? terms[25*count + k] + sps_Z_a_t_2 : sps_Z_a_t_2;  /* Z_a_sps_y */
-        terms[26*count + k] = add ? terms[26*count + k] + sps_Z_a_t_3 : sps_Z_a_t_3;  /* Z_a_sps_z */
+        gather(&terms[24*count + k], add, sps_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[25*count + k], add, sps_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[26*count + k], add, sps_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 3 */
+           extra degree of freedom of joint 3 */
         o[0*count + k] = sps_mu_3_o_in_axes3_z;
         /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 3 */
+           degree of freedom of joint 3 */
         o[1*count + k] = sps_d_P_3_x;
         o[2*count + k] = sps_d_P_3_x;
         o[3*count + k] = sps_d_P_3_y;
@@ -2019,7 +2041,7 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         o[11*count + k] = sps_M_ya_3_z;
         o[12*count + k] = sps_M_ya_3_z;
         /* (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 3 */
+           extra degree of freedom of joint 3 */
         o[13*count + k] = sps_J_group_3_in_axes3_zz;
         /* (sps-w_4) reciprocal vector 3 */
         o[14*count + k] = sps_w_4_x;
@@ -2032,10 +2054,8 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         o[21*count + k] = ((sps_mu_3_o_in_axes3_z + (sps_d_P_3_x + sps_d_P_3_y)) + ((sps_d_P_3_z +
             sps_M_ya_3_x) + (sps_M_ya_3_y + sps_M_ya_3_z))) + ((sps_J_group_3_in_axes3_zz +
             (sps_w_4_x + sps_w_4_y)) + ((sps_w_4_z + sps_H_a_4_x) + (sps_H_a_4_y + sps_H_a_4_z)));
-        o[20*count + k] = UNLESS(magnitude(sps_rho2_1) >
-            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(sps_rho2_2) >
-            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(sps_w_1_t) >
-            TOLERANCE*R(0.6400000000000001));
+        o[20*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
     }
 }
 
@@ -2044,25 +2064,25 @@ INLINE void dynamics_place_sps(size_t w, size_t count, const real *o, size_t leg
 {
     for (size_t k = 0; k < w; ++k) {
         Z[(6 + leg)*w + k] = o[0*count + first + k];
-        M[(72 + 12*leg)*w + k] = o[1*count + first + k];
-        M[(6 + leg)*w + k] = o[2*count + first + k];
-        M[(73 + 12*leg)*w + k] = o[3*count + first + k];
-        M[(18 + leg)*w + k] = o[4*count + first + k];
-        M[(74 + 12*leg)*w + k] = o[5*count + first + k];
-        M[(30 + leg)*w + k] = o[6*count + first + k];
-        M[(75 + 12*leg)*w + k] = o[7*count + first + k];
-        M[(42 + leg)*w + k] = o[8*count + first + k];
-        M[(76 + 12*leg)*w + k] = o[9*count + first + k];
-        M[(54 + leg)*w + k] = o[10*count + first + k];
-        M[(77 + 12*leg)*w + k] = o[11*count + first + k];
-        M[(66 + leg)*w + k] = o[12*count + first + k];
-        M[(78 + 13*leg)*w + k] = o[13*count + first + k];
-        H[(leg)*w + k] = o[14*count + first + k];
-        H[(6 + leg)*w + k] = o[15*count + first + k];
-        H[(12 + leg)*w + k] = o[16*count + first + k];
-        H[(18 + leg)*w + k] = o[17*count + first + k];
-        H[(24 + leg)*w + k] = o[18*count + first + k];
-        H[(30 + leg)*w + k] = o[19*count + first + k];
+        M[((6 + leg)*NV)*w + k] = o[1*count + first + k];
+        M[(0*NV + 6 + leg)*w + k] = o[2*count + first + k];
+        M[((6 + leg)*NV + 1)*w + k] = o[3*count + first + k];
+        M[(NV + 6 + leg)*w + k] = o[4*count + first + k];
+        M[((6 + leg)*NV + 2)*w + k] = o[5*count + first + k];
+        M[(2*NV + 6 + leg)*w + k] = o[6*count + first + k];
+        M[((6 + leg)*NV + 3)*w + k] = o[7*count + first + k];
+        M[(3*NV + 6 + leg)*w + k] = o[8*count + first + k];
+        M[((6 + leg)*NV + 4)*w + k] = o[9*count + first + k];
+        M[(4*NV + 6 + leg)*w + k] = o[10*count + first + k];
+        M[((6 + leg)*NV + 5)*w + k] = o[11*count + first + k];
+        M[(5*NV + 6 + leg)*w + k] = o[12*count + first + k];
+        M[((6 + leg)*NV + 6 + leg)*w + k] = o[13*count + first + k];
+        H[(0*NU + leg)*w + k] = o[14*count + first + k];
+        H[(NU + leg)*w + k] = o[15*count + first + k];
+        H[(2*NU + leg)*w + k] = o[16*count + first + k];
+        H[(3*NU + leg)*w + k] = o[17*count + first + k];
+        H[(4*NU + leg)*w + k] = o[18*count + first + k];
+        H[(5*NU + leg)*w + k] = o[19*count + first + k];
         t->singular[k] += o[20*count + first + k];
         t->total[k] += o[21*count + first + k];
     }
@@ -2073,113 +2093,113 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_sps_xx = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_sps_xx + m_star;
-        const real M_tt_sps_yy = sums[3*w + k];
-        const real M_tt_yy = M_tt_sps_yy + m_star;
-        const real M_tt_sps_zz = sums[5*w + k];
-        const real M_tt_zz = M_tt_sps_zz + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_sps_xy = sums[7*w + k];
+        const real M_ta_xy_of_legs = sums[7*w + k];
         const real h_star_z = s[20*w + k];
-        const real M_ta_xy = M_ta_sps_xy + h_star_z;
-        const real M_ta_sps_xz = sums[8*w + k];
+        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+        const real M_ta_xz_of_legs = sums[8*w + k];
         const real h_star_y = s[19*w + k];
-        const real M_ta_xz = M_ta_sps_xz - h_star_y;
-        const real M_ta_sps_yx = sums[9*w + k];
-        const real M_ta_yx = M_ta_sps_yx - h_star_z;
-        const real M_ta_sps_yz = sums[11*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yx_of_legs = sums[9*w + k];
+        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+        const real M_ta_yz_of_legs = sums[11*w + k];
         const real h_star_x = s[18*w + k];
-        const real M_ta_yz = M_ta_sps_yz + h_star_x;
-        const real M_ta_sps_zx = sums[12*w + k];
-        const real M_ta_zx = M_ta_sps_zx + h_star_y;
-        const real M_ta_sps_zy = sums[13*w + k];
-        const real M_ta_zy = M_ta_sps_zy - h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+        const real M_ta_zx_of_legs = sums[12*w + k];
+        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+        const real M_ta_zy_of_legs = sums[13*w + k];
+        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[21*w + k];
-        const real M_aa_sps_xx = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_sps_xx;
+        const real M_aa_xx_of_legs = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[22*w + k];
-        const real M_aa_sps_xy = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_sps_xy;
+        const real M_aa_xy_of_legs = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[23*w + k];
-        const real M_aa_sps_xz = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_sps_xz;
+        const real M_aa_xz_of_legs = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
         const real J_star_yy = s[24*w + k];
-        const real M_aa_sps_yy = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_sps_yy;
+        const real M_aa_yy_of_legs = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
         const real J_star_yz = s[25*w + k];
-        const real M_aa_sps_yz = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_sps_yz;
+        const real M_aa_yz_of_legs = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[26*w + k];
-        const real M_aa_sps_zz = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_sps_zz;
+        const real M_aa_zz_of_legs = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real Z_t_sps_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + Z_t_sps_x;
+        const real Z_t_x_of_legs = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[28*w + k];
-        const real Z_t_sps_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + Z_t_sps_y;
+        const real Z_t_y_of_legs = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = s[29*w + k];
-        const real Z_t_sps_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + Z_t_sps_z;
+        const real Z_t_z_of_legs = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_sps_x = sums[24*w + k];
+        const real Z_a_x_of_legs = sums[24*w + k];
         const real Z_q_x = s[30*w + k];
-        const real Z_a_x = Z_a_sps_x + Z_q_x;
-        const real Z_a_sps_y = sums[25*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[25*w + k];
         const real Z_q_y = s[31*w + k];
-        const real Z_a_y = Z_a_sps_y + Z_q_y;
-        const real Z_a_sps_z = sums[26*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[26*w + k];
         const real Z_q_z = s[32*w + k];
-        const real Z_a_z = Z_a_sps_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
+        M[0*NV*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[12*w + k] = M_tt_xy;
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[24*w + k] = M_tt_xz;
-        M[13*w + k] = M_tt_yy;
+        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*NV*w + k] = M_tt_xz;
+        M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
-        M[14*w + k] = M_tt_yz;
-        M[25*w + k] = M_tt_yz;
-        M[26*w + k] = M_tt_zz;
+        M[(NV + 2)*w + k] = M_tt_yz;
+        M[(2*NV + 1)*w + k] = M_tt_yz;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[36*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[48*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[60*w + k] = M_ta_xz;
-        M[15*w + k] = M_ta_yx;
-        M[37*w + k] = M_ta_yx;
+        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*NV*w + k] = M_ta_xx;
+        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*NV*w + k] = M_ta_xy;
+        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*NV*w + k] = M_ta_xz;
+        M[(NV + 3)*w + k] = M_ta_yx;
+        M[(3*NV + 1)*w + k] = M_ta_yx;
         const real M_ta_t = sums[10*w + k];
-        M[16*w + k] = -M_ta_t;
-        M[49*w + k] = -M_ta_t;
-        M[17*w + k] = M_ta_yz;
-        M[61*w + k] = M_ta_yz;
-        M[27*w + k] = M_ta_zx;
-        M[38*w + k] = M_ta_zx;
-        M[28*w + k] = M_ta_zy;
-        M[50*w + k] = M_ta_zy;
+        M[(NV + 4)*w + k] = -M_ta_t;
+        M[(4*NV + 1)*w + k] = -M_ta_t;
+        M[(NV + 5)*w + k] = M_ta_yz;
+        M[(5*NV + 1)*w + k] = M_ta_yz;
+        M[(2*NV + 3)*w + k] = M_ta_zx;
+        M[(3*NV + 2)*w + k] = M_ta_zx;
+        M[(2*NV + 4)*w + k] = M_ta_zy;
+        M[(4*NV + 2)*w + k] = M_ta_zy;
         const real M_ta_zz = sums[14*w + k];
-        M[29*w + k] = M_ta_zz;
-        M[62*w + k] = M_ta_zz;
+        M[(2*NV + 5)*w + k] = M_ta_zz;
+        M[(5*NV + 2)*w + k] = M_ta_zz;
         /* (M_aa) rotational block of M */
-        M[39*w + k] = M_aa_xx;
-        M[40*w + k] = M_aa_xy;
-        M[51*w + k] = M_aa_xy;
-        M[41*w + k] = M_aa_xz;
-        M[63*w + k] = M_aa_xz;
-        M[52*w + k] = M_aa_yy;
-        M[53*w + k] = M_aa_yz;
-        M[64*w + k] = M_aa_yz;
-        M[65*w + k] = M_aa_zz;
+        M[(3*NV + 3)*w + k] = M_aa_xx;
+        M[(3*NV + 4)*w + k] = M_aa_xy;
+        M[(4*NV + 3)*w + k] = M_aa_xy;
+        M[(3*NV + 5)*w + k] = M_aa_xz;
+        M[(5*NV + 3)*w + k] = M_aa_xz;
+        M[(4*NV + 4)*w + k] = M_aa_yy;
+        M[(4*NV + 5)*w + k] = M_aa_yz;
+        M[(5*NV + 4)*w + k] = M_aa_yz;
+        M[(5*NV + 5)*w + k] = M_aa_zz;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -2198,16 +2218,19 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[33] = {0}, sums[27] = {0}, terms_sps[27*LEGS(6)] = {0}, o_sps[22*LEGS(6)] = {0};
-    clear(M, 144);
-    clear(H, 72);
+    real s[33] = {0};
+    real sums[27] = {0};
+    real terms_sps[27*LEGS(LEGS_OF_sps)] = {0};
+    real o_sps[22*LEGS(LEGS_OF_sps)] = {0};
+    clear(M, NV*NV);
+    clear(H, NV*NU);
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, V, terms_sps, o_sps);
-    for (size_t leg = 0; leg < 6; ++leg) {
-        dynamics_place_sps(1, LEGS(6), o_sps, leg, leg, M, Z, H, t);
+    dynamics_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), 0, X, V, terms_sps, o_sps);
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
+        dynamics_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, M, Z, H, t);
     }
     for (size_t n = 0; n < 27; ++n) {
-        sums[n] = total(terms_sps + n*LEGS(6), 6);
+        sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -2215,19 +2238,21 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[33*LANES], sums[27*LANES], o_sps[22*LANES];
-    clear(M, 144*LANES);
-    clear(H, 72*LANES);
+    real s[33*LANES];
+    real sums[27*LANES];
+    real o_sps[22*LANES];
+    clear(M, NV*NV*LANES);
+    clear(H, NV*NU*LANES);
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
-    for (size_t leg = 0; leg < 6; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         dynamics_legs_sps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_sps);
         dynamics_place_sps(LANES, LANES, o_sps, leg, 0, M, Z, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
-/* ---- M: 1227 mul, 849 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2364,7 +2389,7 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real t_z = s[2*w + j];
         const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
         /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
         const real sps_c_3 = -sine(sps_y_3_extra);
         /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
         const real sps_s_3 = cosine(sps_y_3_extra);
@@ -2483,7 +2508,7 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real sps_d_Gamma_1_in_axes3_z = sps_e_1_in_axes3_x*sps_h_4_in_spec3_z -
             sps_e_1_in_axes3_y*sps_h_4_in_spec3_y;
         /* (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real sps_d_G_in_axes3_xz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_x +
             sps_d_Gamma_2_in_axes3_z*sps_w_2_in_axes3_x;
         const real sps_d_G_in_axes3_yz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_y -
@@ -2543,7 +2568,7 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real sps_Q_t_14 = axis_x_sps_axes3_z*sps_Q_t_8 + axis_y_sps_axes3_z*sps_Q_t_11;
         const real sps_Q_zz = -2*sps_Q_t_14;
         /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 3 */
+           degree of freedom of joint 3 */
         const real sps_d_P_3_x = axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx +
             axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy;
         const real sps_d_P_3_y = axis_x_sps_axes3_y*sps_d_mu_3_in_axes3_zx +
@@ -2575,31 +2600,31 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real sps_M_ya_3_y = sps_d_P_3_x*sps_q_z - sps_d_P_3_z*sps_q_x;
         const real sps_M_ya_3_z = sps_d_P_3_y*sps_q_x - sps_d_P_3_x*sps_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + sps_Q_xx : sps_Q_xx;  /* M_tt_sps_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + sps_Q_xy : sps_Q_xy;  /* M_tt_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + sps_Q_xz : sps_Q_xz;  /* M_tt_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + sps_Q_yy : sps_Q_yy;  /* M_tt_sps_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + sps_Q_yz : sps_Q_yz;  /* M_tt_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + sps_Q_zz : sps_Q_zz;  /* M_tt_sps_zz */
+        gather(&terms[0*count + k], add, sps_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, sps_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, sps_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, sps_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, sps_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, sps_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + sps_M_ta_t_3 : sps_M_ta_t_3;  /* M_ta_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + sps_M_ta_t_4 : sps_M_ta_t_4;  /* M_ta_sps_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + sps_M_ta_t_5 : sps_M_ta_t_5;  /* M_ta_sps_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + sps_M_ta_t_6 : sps_M_ta_t_6;  /* M_ta_sps_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + sps_M_ta_t_8 : sps_M_ta_t_8;  /* M_ta_t */
-        terms[11*count + k] = add ? terms[11*count + k] + sps_M_ta_t_9 : sps_M_ta_t_9;  /* M_ta_sps_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + sps_M_ta_t_10 : sps_M_ta_t_10;  /* M_ta_sps_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + sps_M_ta_t_11 : sps_M_ta_t_11;  /* M_ta_sps_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + sps_M_ta_t_12 : sps_M_ta_t_12;  /* M_ta_zz */
+        gather(&terms[6*count + k], add, sps_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, sps_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, sps_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, sps_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, sps_M_ta_t_8);  /* M_ta_t */
+        gather(&terms[11*count + k], add, sps_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, sps_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, sps_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, sps_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + sps_M_aa_t : sps_M_aa_t;  /* M_aa_sps_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + sps_M_aa_t_2 : sps_M_aa_t_2;  /* M_aa_sps_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + sps_M_aa_t_3 : sps_M_aa_t_3;  /* M_aa_sps_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + sps_M_aa_t_4 : sps_M_aa_t_4;  /* M_aa_sps_yy */
-        terms[19*count + k] = add ? terms[19*count + k] + sps_M_aa_t_5 : sps_M_aa_t_5;  /* M_aa_sps_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + sps_M_aa_t_6 : sps_M_aa_t_6;  /* M_aa_sps_zz */
+        gather(&terms[15*count + k], add, sps_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, sps_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, sps_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, sps_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, sps_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, sps_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 3 */
+           degree of freedom of joint 3 */
         o[0*count + k] = sps_d_P_3_x;
         o[1*count + k] = sps_d_P_3_x;
         o[2*count + k] = sps_d_P_3_y;
@@ -2614,14 +2639,12 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         o[10*count + k] = sps_M_ya_3_z;
         o[11*count + k] = sps_M_ya_3_z;
         /* (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 3 */
+           extra degree of freedom of joint 3 */
         o[12*count + k] = sps_J_group_3_in_axes3_zz;
         o[14*count + k] = (sps_d_P_3_x + (sps_d_P_3_y + sps_d_P_3_z)) + ((sps_M_ya_3_x +
             sps_M_ya_3_y) + (sps_M_ya_3_z + sps_J_group_3_in_axes3_zz));
-        o[13*count + k] = UNLESS(magnitude(sps_rho2_1) >
-            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(sps_rho2_2) >
-            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(sps_w_1_t) >
-            TOLERANCE*R(0.6400000000000001));
+        o[13*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
     }
 }
 
@@ -2629,19 +2652,19 @@ INLINE void M_place_sps(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        M[(72 + 12*leg)*w + k] = o[0*count + first + k];
-        M[(6 + leg)*w + k] = o[1*count + first + k];
-        M[(73 + 12*leg)*w + k] = o[2*count + first + k];
-        M[(18 + leg)*w + k] = o[3*count + first + k];
-        M[(74 + 12*leg)*w + k] = o[4*count + first + k];
-        M[(30 + leg)*w + k] = o[5*count + first + k];
-        M[(75 + 12*leg)*w + k] = o[6*count + first + k];
-        M[(42 + leg)*w + k] = o[7*count + first + k];
-        M[(76 + 12*leg)*w + k] = o[8*count + first + k];
-        M[(54 + leg)*w + k] = o[9*count + first + k];
-        M[(77 + 12*leg)*w + k] = o[10*count + first + k];
-        M[(66 + leg)*w + k] = o[11*count + first + k];
-        M[(78 + 13*leg)*w + k] = o[12*count + first + k];
+        M[((6 + leg)*NV)*w + k] = o[0*count + first + k];
+        M[(0*NV + 6 + leg)*w + k] = o[1*count + first + k];
+        M[((6 + leg)*NV + 1)*w + k] = o[2*count + first + k];
+        M[(NV + 6 + leg)*w + k] = o[3*count + first + k];
+        M[((6 + leg)*NV + 2)*w + k] = o[4*count + first + k];
+        M[(2*NV + 6 + leg)*w + k] = o[5*count + first + k];
+        M[((6 + leg)*NV + 3)*w + k] = o[6*count + first + k];
+        M[(3*NV + 6 + leg)*w + k] = o[7*count + first + k];
+        M[((6 + leg)*NV + 4)*w + k] = o[8*count + first + k];
+        M[(4*NV + 6 + leg)*w + k] = o[9*count + first + k];
+        M[((6 + leg)*NV + 5)*w + k] = o[10*count + first + k];
+        M[(5*NV + 6 + leg)*w + k] = o[11*count + first + k];
+        M[((6 + leg)*NV + 6 + leg)*w + k] = o[12*count + first + k];
         t->singular[k] += o[13*count + first + k];
         t->total[k] += o[14*count + first + k];
     }
@@ -2652,93 +2675,93 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_sps_xx = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_sps_xx + m_star;
-        const real M_tt_sps_yy = sums[3*w + k];
-        const real M_tt_yy = M_tt_sps_yy + m_star;
-        const real M_tt_sps_zz = sums[5*w + k];
-        const real M_tt_zz = M_tt_sps_zz + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_sps_xy = sums[7*w + k];
+        const real M_ta_xy_of_legs = sums[7*w + k];
         const real h_star_z = s[14*w + k];
-        const real M_ta_xy = M_ta_sps_xy + h_star_z;
-        const real M_ta_sps_xz = sums[8*w + k];
+        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+        const real M_ta_xz_of_legs = sums[8*w + k];
         const real h_star_y = s[13*w + k];
-        const real M_ta_xz = M_ta_sps_xz - h_star_y;
-        const real M_ta_sps_yx = sums[9*w + k];
-        const real M_ta_yx = M_ta_sps_yx - h_star_z;
-        const real M_ta_sps_yz = sums[11*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yx_of_legs = sums[9*w + k];
+        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+        const real M_ta_yz_of_legs = sums[11*w + k];
         const real h_star_x = s[12*w + k];
-        const real M_ta_yz = M_ta_sps_yz + h_star_x;
-        const real M_ta_sps_zx = sums[12*w + k];
-        const real M_ta_zx = M_ta_sps_zx + h_star_y;
-        const real M_ta_sps_zy = sums[13*w + k];
-        const real M_ta_zy = M_ta_sps_zy - h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+        const real M_ta_zx_of_legs = sums[12*w + k];
+        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+        const real M_ta_zy_of_legs = sums[13*w + k];
+        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[15*w + k];
-        const real M_aa_sps_xx = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_sps_xx;
+        const real M_aa_xx_of_legs = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[16*w + k];
-        const real M_aa_sps_xy = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_sps_xy;
+        const real M_aa_xy_of_legs = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[17*w + k];
-        const real M_aa_sps_xz = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_sps_xz;
+        const real M_aa_xz_of_legs = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
         const real J_star_yy = s[18*w + k];
-        const real M_aa_sps_yy = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_sps_yy;
+        const real M_aa_yy_of_legs = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
         const real J_star_yz = s[19*w + k];
-        const real M_aa_sps_yz = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_sps_yz;
+        const real M_aa_yz_of_legs = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[20*w + k];
-        const real M_aa_sps_zz = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_sps_zz;
+        const real M_aa_zz_of_legs = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
+        M[0*NV*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[1*w + k] = M_tt_xy;
-        M[12*w + k] = M_tt_xy;
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[2*w + k] = M_tt_xz;
-        M[24*w + k] = M_tt_xz;
-        M[13*w + k] = M_tt_yy;
+        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*NV*w + k] = M_tt_xz;
+        M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
-        M[14*w + k] = M_tt_yz;
-        M[25*w + k] = M_tt_yz;
-        M[26*w + k] = M_tt_zz;
+        M[(NV + 2)*w + k] = M_tt_yz;
+        M[(2*NV + 1)*w + k] = M_tt_yz;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[36*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[48*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[60*w + k] = M_ta_xz;
-        M[15*w + k] = M_ta_yx;
-        M[37*w + k] = M_ta_yx;
+        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*NV*w + k] = M_ta_xx;
+        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*NV*w + k] = M_ta_xy;
+        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*NV*w + k] = M_ta_xz;
+        M[(NV + 3)*w + k] = M_ta_yx;
+        M[(3*NV + 1)*w + k] = M_ta_yx;
         const real M_ta_t = sums[10*w + k];
-        M[16*w + k] = -M_ta_t;
-        M[49*w + k] = -M_ta_t;
-        M[17*w + k] = M_ta_yz;
-        M[61*w + k] = M_ta_yz;
-        M[27*w + k] = M_ta_zx;
-        M[38*w + k] = M_ta_zx;
-        M[28*w + k] = M_ta_zy;
-        M[50*w + k] = M_ta_zy;
+        M[(NV + 4)*w + k] = -M_ta_t;
+        M[(4*NV + 1)*w + k] = -M_ta_t;
+        M[(NV + 5)*w + k] = M_ta_yz;
+        M[(5*NV + 1)*w + k] = M_ta_yz;
+        M[(2*NV + 3)*w + k] = M_ta_zx;
+        M[(3*NV + 2)*w + k] = M_ta_zx;
+        M[(2*NV + 4)*w + k] = M_ta_zy;
+        M[(4*NV + 2)*w + k] = M_ta_zy;
         const real M_ta_zz = sums[14*w + k];
-        M[29*w + k] = M_ta_zz;
-        M[62*w + k] = M_ta_zz;
+        M[(2*NV + 5)*w + k] = M_ta_zz;
+        M[(5*NV + 2)*w + k] = M_ta_zz;
         /* (M_aa) rotational block of M */
-        M[39*w + k] = M_aa_xx;
-        M[40*w + k] = M_aa_xy;
-        M[51*w + k] = M_aa_xy;
-        M[41*w + k] = M_aa_xz;
-        M[63*w + k] = M_aa_xz;
-        M[52*w + k] = M_aa_yy;
-        M[53*w + k] = M_aa_yz;
-        M[64*w + k] = M_aa_yz;
-        M[65*w + k] = M_aa_zz;
+        M[(3*NV + 3)*w + k] = M_aa_xx;
+        M[(3*NV + 4)*w + k] = M_aa_xy;
+        M[(4*NV + 3)*w + k] = M_aa_xy;
+        M[(3*NV + 5)*w + k] = M_aa_xz;
+        M[(5*NV + 3)*w + k] = M_aa_xz;
+        M[(4*NV + 4)*w + k] = M_aa_yy;
+        M[(4*NV + 5)*w + k] = M_aa_yz;
+        M[(5*NV + 4)*w + k] = M_aa_yz;
+        M[(5*NV + 5)*w + k] = M_aa_zz;
         t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
             M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
             (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
@@ -2748,33 +2771,38 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0}, sums[21] = {0}, terms_sps[21*LEGS(6)] = {0}, o_sps[15*LEGS(6)] = {0};
-    clear(M, 144);
+    real s[21] = {0};
+    real sums[21] = {0};
+    real terms_sps[21*LEGS(LEGS_OF_sps)] = {0};
+    real o_sps[15*LEGS(LEGS_OF_sps)] = {0};
+    clear(M, NV*NV);
     M_before(m, 1, X, s, t);
-    M_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, terms_sps, o_sps);
-    for (size_t leg = 0; leg < 6; ++leg) {
-        M_place_sps(1, LEGS(6), o_sps, leg, leg, M, t);
+    M_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), 0, X, terms_sps, o_sps);
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
+        M_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, M, t);
     }
     for (size_t n = 0; n < 21; ++n) {
-        sums[n] = total(terms_sps + n*LEGS(6), 6);
+        sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     M_after(m, 1, s, sums, M, t);
 }
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES], sums[21*LANES], o_sps[15*LANES];
-    clear(M, 144*LANES);
+    real s[21*LANES];
+    real sums[21*LANES];
+    real o_sps[15*LANES];
+    clear(M, NV*NV*LANES);
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
-    for (size_t leg = 0; leg < 6; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         M_legs_sps(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_sps);
         M_place_sps(LANES, LANES, o_sps, leg, 0, M, t);
     }
     M_after(m, LANES, s, sums, M, t);
 }
 
-/* ---- Z: 1269 mul, 936 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
     *t)
 {
@@ -2948,7 +2976,7 @@ INLINE void Z_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real t_z = s[2*w + j];
         const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
         /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
         const real sps_c_3 = -sine(sps_y_3_extra);
         /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
         const real sps_s_3 = cosine(sps_y_3_extra);
@@ -3054,7 +3082,7 @@ INLINE void Z_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
         const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
         /* (sps-omega_3) angular velocity of link 3 */
-        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
         const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
         /* (sps-W_3) centripetal tensor of link 3 */
         const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
@@ -3191,20 +3219,19 @@ INLINE void Z_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real sps_Z_a_t_2 = sps_U_x*sps_q_z - sps_U_z*sps_q_x;
         const real sps_Z_a_t_3 = sps_U_y*sps_q_x - sps_U_x*sps_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + sps_U_x : sps_U_x;  /* Z_t_sps_x */
-        terms[1*count + k] = add ? terms[1*count + k] + sps_U_y : sps_U_y;  /* Z_t_sps_y */
-        terms[2*count + k] = add ? terms[2*count + k] + sps_U_z : sps_U_z;  /* Z_t_sps_z */
+        gather(&terms[0*count + k], add, sps_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, sps_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, sps_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[3*count + k] = add ? terms[3*count + k] + sps_Z_a_t : sps_Z_a_t;  /* Z_a_sps_x */
-        terms[4*count + k] = add ? terms[4*count + k] + sps_Z_a_t_2 : sps_Z_a_t_2;  /* Z_a_sps_y */
-        terms[5*count + k] = add ? terms[5*count + k] + sps_Z_a_t_3 : sps_Z_a_t_3;  /* Z_a_sps_z */
+        gather(&terms[3*count + k], add, sps_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[4*count + k], add, sps_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[5*count + k], add, sps_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 3 */
+           extra degree of freedom of joint 3 */
         o[0*count + k] = sps_mu_3_o_in_axes3_z;
         o[2*count + k] = sps_mu_3_o_in_axes3_z;
-        o[1*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
+        o[1*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
     }
 }
 
@@ -3223,24 +3250,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real Z_t_sps_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_sps_x;
+        const real Z_t_x_of_legs = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[19*w + k];
-        const real Z_t_sps_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_sps_y;
+        const real Z_t_y_of_legs = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = s[20*w + k];
-        const real Z_t_sps_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_sps_z;
+        const real Z_t_z_of_legs = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_sps_x = sums[3*w + k];
+        const real Z_a_x_of_legs = sums[3*w + k];
         const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_sps_x + Z_q_x;
-        const real Z_a_sps_y = sums[4*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[4*w + k];
         const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_sps_y + Z_q_y;
-        const real Z_a_sps_z = sums[5*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[5*w + k];
         const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_sps_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -3255,31 +3282,36 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0}, sums[6] = {0}, terms_sps[6*LEGS(6)] = {0}, o_sps[3*LEGS(6)] = {0};
+    real s[24] = {0};
+    real sums[6] = {0};
+    real terms_sps[6*LEGS(LEGS_OF_sps)] = {0};
+    real o_sps[3*LEGS(LEGS_OF_sps)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, V, terms_sps, o_sps);
-    for (size_t leg = 0; leg < 6; ++leg) {
-        Z_place_sps(1, LEGS(6), o_sps, leg, leg, Z, t);
+    Z_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), 0, X, V, terms_sps, o_sps);
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
+        Z_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, Z, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_sps + n*LEGS(6), 6);
+        sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     Z_after(1, s, sums, Z, t);
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES], sums[6*LANES], o_sps[3*LANES];
+    real s[24*LANES];
+    real sums[6*LANES];
+    real o_sps[3*LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 6; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         Z_legs_sps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_sps);
         Z_place_sps(LANES, LANES, o_sps, leg, 0, Z, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
-/* ---- H: 186 mul, 138 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- H ---- */
 INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3411,8 +3443,8 @@ INLINE void H_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         o[5*count + k] = sps_H_a_4_z;
         o[7*count + k] = (sps_w_4_x + (sps_w_4_y + sps_w_4_z)) + (sps_H_a_4_x + (sps_H_a_4_y +
             sps_H_a_4_z));
-        o[6*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        o[6*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
+            LEAST_1);
     }
 }
 
@@ -3420,12 +3452,12 @@ INLINE void H_place_sps(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(6 + leg)*w + k] = o[1*count + first + k];
-        H[(12 + leg)*w + k] = o[2*count + first + k];
-        H[(18 + leg)*w + k] = o[3*count + first + k];
-        H[(24 + leg)*w + k] = o[4*count + first + k];
-        H[(30 + leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + leg)*w + k] = o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
         t->total[k] += o[7*count + first + k];
     }
@@ -3433,27 +3465,29 @@ INLINE void H_place_sps(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0}, o_sps[8*LEGS(6)] = {0};
-    clear(H, 72);
+    real s[12] = {0};
+    real o_sps[8*LEGS(LEGS_OF_sps)] = {0};
+    clear(H, NV*NU);
     H_before(1, X, s, t);
-    H_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), o_sps);
-    for (size_t leg = 0; leg < 6; ++leg) {
-        H_place_sps(1, LEGS(6), o_sps, leg, leg, H, t);
+    H_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), o_sps);
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
+        H_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, H, t);
     }
 }
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES], o_sps[8*LANES];
-    clear(H, 72*LANES);
+    real s[12*LANES];
+    real o_sps[8*LANES];
+    clear(H, NV*NU*LANES);
     H_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 6; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         H_legs_sps(m, LANES, leg, 0, s, 1, LANES, o_sps);
         H_place_sps(LANES, LANES, o_sps, leg, 0, H, t);
     }
 }
 
-/* ---- required: 1365 mul, 1041 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- required ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
     *A, real *s, verdict *t)
 {
@@ -3663,7 +3697,7 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         const real t_z = s[2*w + j];
         const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
         /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
         const real sps_c_3 = -sine(sps_y_3_extra);
         /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
         const real sps_s_3 = cosine(sps_y_3_extra);
@@ -3769,7 +3803,7 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
         const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
         /* (sps-omega_3) angular velocity of link 3 */
-        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
         const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
         /* (sps-W_3) centripetal tensor of link 3 */
         const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
@@ -3824,7 +3858,7 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
             - sps_qdd_2_t*sps_s_3;
         const real sps_alpha_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_alpha_2_in_axes2_y*sps_s_3
             - sps_c_3*sps_qdd_2_t;
-        const real sps_ydd_3 = A[(place_sps_ydd_3[i])*w + j];
+        const real sps_ydd_3 = A[place_sps_ydd_3[i]*w + j];
         const real sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_x + sps_ydd_3;
         /* (sps-B_3) acceleration tensor of link 3 */
         const real sps_B_3_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z;
@@ -3914,14 +3948,14 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
         const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + sps_c_x : sps_c_x;  /* R_t_t */
-        terms[1*count + k] = add ? terms[1*count + k] + sps_c_y : sps_c_y;  /* R_t_t_2 */
-        terms[2*count + k] = add ? terms[2*count + k] + sps_c_z : sps_c_z;  /* R_t_t_3 */
+        gather(&terms[0*count + k], add, sps_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, sps_c_y);  /* R_t_y_of_legs */
+        gather(&terms[2*count + k], add, sps_c_z);  /* R_t_z_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[3*count + k] = add ? terms[3*count + k] + sps_R_a_t : sps_R_a_t;  /* R_a_sps_x */
-        terms[4*count + k] = add ? terms[4*count + k] + sps_R_a_t_2 : sps_R_a_t_2;  /* R_a_sps_y */
-        terms[5*count + k] = add ? terms[5*count + k] + sps_R_a_t_3 : sps_R_a_t_3;  /* R_a_sps_z */
-        /* (sps-P_3) inertia and weight of the leg along the extra freedom of joint 3 */
+        gather(&terms[3*count + k], add, sps_R_a_t);  /* R_a_x_of_legs */
+        gather(&terms[4*count + k], add, sps_R_a_t_2);  /* R_a_y_of_legs */
+        gather(&terms[5*count + k], add, sps_R_a_t_3);  /* R_a_z_of_legs */
+        /* (sps-P_3) inertia and weight of the leg along the extra degree of freedom of joint 3 */
         o[0*count + k] = sps_mu_3_in_axes3_z;
         /* (sps-w_4) reciprocal vector 3 */
         o[1*count + k] = sps_w_4_x;
@@ -3931,9 +3965,8 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         o[4*count + k] = sps_H_a_4_x;
         o[5*count + k] = sps_H_a_4_y;
         o[6*count + k] = sps_H_a_4_z;
-        o[7*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
+        o[7*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
     }
 }
 
@@ -3942,12 +3975,12 @@ INLINE void required_place_sps(size_t w, size_t count, const real *o, size_t leg
 {
     for (size_t k = 0; k < w; ++k) {
         required[(6 + leg)*w + k] = o[0*count + first + k];
-        H[(leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        H[(12 + leg)*w + k] = o[3*count + first + k];
-        H[(18 + leg)*w + k] = o[4*count + first + k];
-        H[(24 + leg)*w + k] = o[5*count + first + k];
-        H[(30 + leg)*w + k] = o[6*count + first + k];
+        H[(0*NU + leg)*w + k] = o[1*count + first + k];
+        H[(NU + leg)*w + k] = o[2*count + first + k];
+        H[(2*NU + leg)*w + k] = o[3*count + first + k];
+        H[(3*NU + leg)*w + k] = o[4*count + first + k];
+        H[(4*NU + leg)*w + k] = o[5*count + first + k];
+        H[(5*NU + leg)*w + k] = o[6*count + first + k];
         t->singular[k] += o[7*count + first + k];
     }
 }
@@ -3956,25 +3989,25 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
-        const real R_t_t = sums[0*w + k];
+        const real R_t_x_of_legs = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real R_t_x = f_p_x - R_t_t;
-        const real R_t_t_2 = sums[1*w + k];
+        const real R_t_x = f_p_x - R_t_x_of_legs;
+        const real R_t_y_of_legs = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real R_t_y = f_p_y - R_t_t_2;
-        const real R_t_t_3 = sums[2*w + k];
+        const real R_t_y = f_p_y - R_t_y_of_legs;
+        const real R_t_z_of_legs = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real R_t_z = f_p_z - R_t_t_3;
+        const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_sps_x = sums[3*w + k];
+        const real R_a_x_of_legs = sums[3*w + k];
         const real mu_p_x = s[27*w + k];
-        const real R_a_x = R_a_sps_x + mu_p_x;
-        const real R_a_sps_y = sums[4*w + k];
+        const real R_a_x = R_a_x_of_legs + mu_p_x;
+        const real R_a_y_of_legs = sums[4*w + k];
         const real mu_p_y = s[28*w + k];
-        const real R_a_y = R_a_sps_y + mu_p_y;
-        const real R_a_sps_z = sums[5*w + k];
+        const real R_a_y = R_a_y_of_legs + mu_p_y;
+        const real R_a_z_of_legs = sums[5*w + k];
         const real mu_p_z = s[29*w + k];
-        const real R_a_z = R_a_sps_z + mu_p_z;
+        const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -3989,15 +4022,18 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[30] = {0}, sums[6] = {0}, terms_sps[6*LEGS(6)] = {0}, o_sps[8*LEGS(6)] = {0};
-    clear(H, 72);
+    real s[30] = {0};
+    real sums[6] = {0};
+    real terms_sps[6*LEGS(LEGS_OF_sps)] = {0};
+    real o_sps[8*LEGS(LEGS_OF_sps)] = {0};
+    clear(H, NV*NU);
     required_before(m, 1, X, V, A, s, t);
-    required_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, V, A, terms_sps, o_sps);
-    for (size_t leg = 0; leg < 6; ++leg) {
-        required_place_sps(1, LEGS(6), o_sps, leg, leg, required, H, t);
+    required_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), 0, X, V, A, terms_sps, o_sps);
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
+        required_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, required, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_sps + n*LEGS(6), 6);
+        sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     required_after(1, s, sums, required);
 }
@@ -4005,18 +4041,20 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[30*LANES], sums[6*LANES], o_sps[8*LANES];
-    clear(H, 72*LANES);
+    real s[30*LANES];
+    real sums[6*LANES];
+    real o_sps[8*LANES];
+    clear(H, NV*NU*LANES);
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 6; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         required_legs_sps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_sps);
         required_place_sps(LANES, LANES, o_sps, leg, 0, required, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
-/* ---- inverse_kinematics: 162 mul, 120 add, 12 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -4142,13 +4180,13 @@ INLINE void inverse_kinematics_legs_sps(const prepared *m, size_t w, size_t leg,
         /* (sps-q_2) displacement of joint 2 */
         o[1*count + k] = sps_q_2;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
         o[2*count + k] = sps_y_3_extra;
         /* (sps-q_4) displacement of joint 4 */
         o[3*count + k] = sps_root_2;
         o[5*count + k] = (sps_q_1 + sps_q_2) + (sps_y_3_extra + sps_root_2);
-        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
+            LEAST_1);
     }
 }
 
@@ -4156,7 +4194,7 @@ INLINE void inverse_kinematics_place_sps(size_t w, size_t count, const real *o, 
     first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(4*leg)*w + k] = o[0*count + first + k];
+        q[4*leg*w + k] = o[0*count + first + k];
         q[(1 + 4*leg)*w + k] = o[1*count + first + k];
         q[(2 + 4*leg)*w + k] = o[2*count + first + k];
         q[(3 + 4*leg)*w + k] = o[3*count + first + k];
@@ -4167,25 +4205,27 @@ INLINE void inverse_kinematics_place_sps(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0}, o_sps[6*LEGS(6)] = {0};
+    real s[12] = {0};
+    real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
     inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), X, o_sps);
-    for (size_t leg = 0; leg < 6; ++leg) {
-        inverse_kinematics_place_sps(1, LEGS(6), o_sps, leg, leg, q, t);
+    inverse_kinematics_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), X, o_sps);
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
+        inverse_kinematics_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, q, t);
     }
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES], o_sps[6*LANES];
+    real s[12*LANES];
+    real o_sps[6*LANES];
     inverse_kinematics_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 6; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         inverse_kinematics_legs_sps(m, LANES, leg, 0, s, 1, LANES, X, o_sps);
         inverse_kinematics_place_sps(LANES, LANES, o_sps, leg, 0, q, t);
     }
 }
 
-/* ---- joint_rates: 474 mul, 276 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- joint_rates ---- */
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -4295,7 +4335,7 @@ INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t leg, size_t
         const real t_z = s[2*w + j];
         const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
         /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
         const real sps_c_3 = -sine(sps_y_3_extra);
         /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
         const real sps_s_3 = cosine(sps_y_3_extra);
@@ -4389,14 +4429,13 @@ INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t leg, size_t
         /* (sps-qd_2) rate of joint 2 */
         o[1*count + k] = -sps_qd_2_t;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
         o[2*count + k] = sps_yd_3;
         /* (sps-qd_4) rate of joint 4 */
         o[3*count + k] = sps_S_dot_rest_in_axes3_z;
         o[5*count + k] = (sps_qd_1 + sps_qd_2_t) + (sps_yd_3 + sps_S_dot_rest_in_axes3_z);
-        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
+        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
     }
 }
 
@@ -4404,7 +4443,7 @@ INLINE void joint_rates_place_sps(size_t w, size_t count, const real *o, size_t 
     real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(4*leg)*w + k] = o[0*count + first + k];
+        qd[4*leg*w + k] = o[0*count + first + k];
         qd[(1 + 4*leg)*w + k] = o[1*count + first + k];
         qd[(2 + 4*leg)*w + k] = o[2*count + first + k];
         qd[(3 + 4*leg)*w + k] = o[3*count + first + k];
@@ -4415,26 +4454,28 @@ INLINE void joint_rates_place_sps(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0}, o_sps[6*LEGS(6)] = {0};
+    real s[18] = {0};
+    real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
     joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), X, V, o_sps);
-    for (size_t leg = 0; leg < 6; ++leg) {
-        joint_rates_place_sps(1, LEGS(6), o_sps, leg, leg, qd, t);
+    joint_rates_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), X, V, o_sps);
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
+        joint_rates_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, qd, t);
     }
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES], o_sps[6*LANES];
+    real s[18*LANES];
+    real o_sps[6*LANES];
     joint_rates_before(LANES, X, V, s, t);
-    for (size_t leg = 0; leg < 6; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         joint_rates_legs_sps(m, LANES, leg, 0, s, 1, LANES, X, V, o_sps);
         joint_rates_place_sps(LANES, LANES, o_sps, leg, 0, qd, t);
     }
 }
 
-/* ---- joint_accelerations: 762 mul, 474 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- joint_accelerations ---- */
 INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
     *s, verdict *t)
 {
@@ -4566,7 +4607,7 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t leg
         const real t_z = s[2*w + j];
         const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
         /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
         const real sps_c_3 = -sine(sps_y_3_extra);
         /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
         const real sps_s_3 = cosine(sps_y_3_extra);
@@ -4671,7 +4712,7 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t leg
         const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
         const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
         /* (sps-omega_3) angular velocity of link 3 */
-        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
         const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
         /* (sps-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
@@ -4721,14 +4762,13 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t leg
         /* (sps-qdd_2) acceleration of joint 2 */
         o[1*count + k] = -sps_qdd_2_t;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        const real sps_ydd_3 = A[(place_sps_ydd_3[i])*w + j];
+        const real sps_ydd_3 = A[place_sps_ydd_3[i]*w + j];
         o[2*count + k] = sps_ydd_3;
         /* (sps-qdd_4) acceleration of joint 4 */
         o[3*count + k] = sps_rel_in_axes3_z;
         o[5*count + k] = (sps_qdd_1 + sps_qdd_2_t) + (sps_ydd_3 + sps_rel_in_axes3_z);
-        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
+        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
     }
 }
 
@@ -4736,7 +4776,7 @@ INLINE void joint_accelerations_place_sps(size_t w, size_t count, const real *o,
     size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(4*leg)*w + k] = o[0*count + first + k];
+        qdd[4*leg*w + k] = o[0*count + first + k];
         qdd[(1 + 4*leg)*w + k] = o[1*count + first + k];
         qdd[(2 + 4*leg)*w + k] = o[2*count + first + k];
         qdd[(3 + 4*leg)*w + k] = o[3*count + first + k];
@@ -4748,26 +4788,28 @@ INLINE void joint_accelerations_place_sps(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0}, o_sps[6*LEGS(6)] = {0};
+    real s[24] = {0};
+    real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
     joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), X, V, A, o_sps);
-    for (size_t leg = 0; leg < 6; ++leg) {
-        joint_accelerations_place_sps(1, LEGS(6), o_sps, leg, leg, qdd, t);
+    joint_accelerations_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), X, V, A, o_sps);
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
+        joint_accelerations_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES], o_sps[6*LANES];
+    real s[24*LANES];
+    real o_sps[6*LANES];
     joint_accelerations_before(LANES, X, V, A, s, t);
-    for (size_t leg = 0; leg < 6; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         joint_accelerations_legs_sps(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_sps);
         joint_accelerations_place_sps(LANES, LANES, o_sps, leg, 0, qdd, t);
     }
 }
 
-/* ---- legs: 1218 mul, 906 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- legs ---- */
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
     *t)
 {
@@ -4898,7 +4940,7 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real t_z = s[2*w + j];
         const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
         /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
         const real sps_c_3 = -sine(sps_y_3_extra);
         /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
         const real sps_s_3 = cosine(sps_y_3_extra);
@@ -5004,7 +5046,7 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
         const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
         /* (sps-omega_3) angular velocity of link 3 */
-        const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
+        const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
         const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
         /* (sps-W_3) centripetal tensor of link 3 */
         const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
@@ -5059,7 +5101,7 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, 
             - sps_qdd_2_t*sps_s_3;
         const real sps_alpha_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_alpha_2_in_axes2_y*sps_s_3
             - sps_c_3*sps_qdd_2_t;
-        const real sps_ydd_3 = A[(place_sps_ydd_3[i])*w + j];
+        const real sps_ydd_3 = A[place_sps_ydd_3[i]*w + j];
         const real sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_x + sps_ydd_3;
         /* (sps-B_3) acceleration tensor of link 3 */
         const real sps_B_3_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z;
@@ -5151,38 +5193,38 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, 
         o[3*count + k] = sps_w_4_x;
         o[4*count + k] = sps_w_4_y;
         o[5*count + k] = sps_w_4_z;
-        o[6*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
+        o[6*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
     }
 }
 
 INLINE void legs_place_sps(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o[0*count + first + k];
-        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        leg_force[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        drive[(3*leg)*w + k] = o[3*count + first + k];
-        drive[(1 + 3*leg)*w + k] = o[4*count + first + k];
-        drive[(2 + 3*leg)*w + k] = o[5*count + first + k];
+        leg_force[3*leg*w + k] = o[0*count + first + k];
+        leg_force[(3*leg + 1)*w + k] = o[1*count + first + k];
+        leg_force[(3*leg + 2)*w + k] = o[2*count + first + k];
+        actuator[3*leg*w + k] = o[3*count + first + k];
+        actuator[(3*leg + 1)*w + k] = o[4*count + first + k];
+        actuator[(3*leg + 2)*w + k] = o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
     }
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
-    real s[24] = {0}, o_sps[7*LEGS(6)] = {0};
+    real s[24] = {0};
+    real o_sps[7*LEGS(LEGS_OF_sps)] = {0};
     legs_before(1, X, V, A, s, t);
-    legs_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), X, V, A, o_sps);
-    for (size_t leg = 0; leg < 6; ++leg) {
-        legs_place_sps(1, LEGS(6), o_sps, leg, leg, leg_force, drive, t);
+    legs_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), X, V, A, o_sps);
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
+        legs_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, leg_force, actuator, t);
     }
 }
 
-/* ---- potential: 357 mul, 258 add, 12 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -5283,7 +5325,7 @@ INLINE void potential_legs_sps(const prepared *m, size_t w, size_t leg, size_t l
         const real sps_S_z = t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
             R_zz*sps_platform_point_z - sps_base_point_z;
         /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
         const real sps_c_3 = -sine(sps_y_3_extra);
         /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
         const real sps_s_3 = cosine(sps_y_3_extra);
@@ -5354,9 +5396,9 @@ INLINE void potential_legs_sps(const prepared *m, size_t w, size_t leg, size_t l
             sps_potential_t_7*sps_s_3)*(sps_h_3_in_spec3_y + sps_h_4_in_spec3_y +
             sps_link3_mass*(sps_c_3*sps_potential_t_12 + sps_potential_t_10*sps_s_3));
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + sps_potential_t_13 : sps_potential_t_13;  /* potential_t_2 */
-        o[0*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
+        gather(&terms[0*count + k], add, sps_potential_t_13);  /* potential_of_legs */
+        o[0*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
+            LEAST_1);
     }
 }
 
@@ -5371,9 +5413,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
+        const real potential_of_legs = sums[0*w + k];
         const real potential_t = s[12*w + k];
-        const real potential_t_2 = sums[0*w + k];
-        const real potential_ = -potential_t - potential_t_2;
+        const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
@@ -5381,19 +5423,22 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0}, sums[1] = {0}, terms_sps[1*LEGS(6)] = {0}, o_sps[1*LEGS(6)] = {0};
+    real s[13] = {0};
+    real sums[1] = {0};
+    real terms_sps[LEGS(LEGS_OF_sps)] = {0};
+    real o_sps[LEGS(LEGS_OF_sps)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, terms_sps, o_sps);
-    for (size_t leg = 0; leg < 6; ++leg) {
-        potential_place_sps(1, LEGS(6), o_sps, leg, t);
+    potential_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), 0, X, terms_sps, o_sps);
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
+        potential_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_sps + n*LEGS(6), 6);
+        sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     potential_after(1, s, sums, potential);
 }
 
-/* ---- condition: 283 mul, 192 add, 6 div, 25 sqrt, 12 trig, every leg counted ---- */
+/* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
     verdict *t)
 {
@@ -5488,7 +5533,7 @@ INLINE void condition_legs_sps(const prepared *m, size_t w, size_t leg, size_t l
         const real t_z = s[2*w + j];
         const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
         /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
         const real sps_c_3 = -sine(sps_y_3_extra);
         /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
         const real sps_s_3 = cosine(sps_y_3_extra);
@@ -5529,7 +5574,7 @@ INLINE void condition_legs_sps(const prepared *m, size_t w, size_t leg, size_t l
         const real sps_w_4_y = inv_sps_root_2*sps_S_y;
         const real sps_w_4_z = inv_sps_root_2*sps_S_z;
         /* (sps-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real sps_pivot_size = magnitude(sps_rho2_1);
         const real sps_pivot_size_2 = magnitude(sps_rho2_2);
         const real sps_pivot_size_3 = magnitude(sps_w_1_t);
@@ -5549,7 +5594,7 @@ INLINE void condition_legs_sps(const prepared *m, size_t w, size_t leg, size_t l
         const real sps_spread_t_4 = sps_spread_t*sps_spread_t + sps_spread_t_2*sps_spread_t_2 +
             sps_spread_t_3*sps_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + sps_spread_t_4 : sps_spread_t_4;  /* spread_sps */
+        gather(&terms[0*count + k], add, sps_spread_t_4);  /* spread_sps */
         /* (sps-w_4) reciprocal vector 3 */
         o[0*count + k] = sps_w_4_x;
         o[1*count + k] = sps_w_4_y;
@@ -5559,13 +5604,12 @@ INLINE void condition_legs_sps(const prepared *m, size_t w, size_t leg, size_t l
         o[4*count + k] = sps_H_a_4_y;
         o[5*count + k] = sps_H_a_4_z;
         /* (sps-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[6*count + k] = sps_least_pivots;
         o[8*count + k] = (sps_w_4_x + (sps_w_4_y + sps_w_4_z)) + ((sps_H_a_4_x + sps_H_a_4_y) +
             (sps_H_a_4_z + sps_least_pivots));
-        o[7*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
+        o[7*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
     }
 }
 
@@ -5573,13 +5617,13 @@ INLINE void condition_place_sps(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(6 + leg)*w + k] = o[1*count + first + k];
-        H[(12 + leg)*w + k] = o[2*count + first + k];
-        H[(18 + leg)*w + k] = o[3*count + first + k];
-        H[(24 + leg)*w + k] = o[4*count + first + k];
-        H[(30 + leg)*w + k] = o[5*count + first + k];
-        pivots[(leg)*w + k] = o[6*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + leg)*w + k] = o[5*count + first + k];
+        pivots[leg*w + k] = o[6*count + first + k];
         t->singular[k] += o[7*count + first + k];
         t->total[k] += o[8*count + first + k];
     }
@@ -5602,16 +5646,19 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[12] = {0}, sums[1] = {0}, terms_sps[1*LEGS(6)] = {0}, o_sps[9*LEGS(6)] = {0};
-    clear(H, 72);
-    clear(reach, 6);
+    real s[12] = {0};
+    real sums[1] = {0};
+    real terms_sps[LEGS(LEGS_OF_sps)] = {0};
+    real o_sps[9*LEGS(LEGS_OF_sps)] = {0};
+    clear(H, NV*NU);
+    clear(reach, NL);
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_sps(m, 1, 0, 1, s, 0, LEGS(6), 0, X, terms_sps, o_sps);
-    for (size_t leg = 0; leg < 6; ++leg) {
-        condition_place_sps(1, LEGS(6), o_sps, leg, leg, H, pivots, t);
+    condition_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), 0, X, terms_sps, o_sps);
+    for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
+        condition_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, H, pivots, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_sps + n*LEGS(6), 6);
+        sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     condition_after(m, 1, sums, lengths, t);
 }
@@ -5620,280 +5667,280 @@ INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengt
 
 INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real M[144] = {0};
+    real M[NV*NV] = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     M_run(m, X, M, &why);
     if (!is_finite(why.total[0])) {
-        check(144, 1, M, why.overflow);
+        check(NV*NV, 1, M, why.overflow);
     }
     judge(&why, code);
-    copy(144, M, M_out);
+    copy(NV*NV, M, M_out);
     if (*code != OK) {
-        refuse(144, M_out);
+        refuse(NV*NV, M_out);
     }
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[13*LANES], M[144*LANES];
+    real X_in[NQ*LANES], M[NV*NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
     suspect(&why, code);
-    deliver(144, M, M_out);
+    deliver(NV*NV, M, M_out);
 }
 
 INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real Z[12] = {0};
+    real Z[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     Z_run(m, X, V, Z, &why);
     if (!is_finite(why.total[0])) {
-        check(12, 1, Z, why.overflow);
+        check(NV, 1, Z, why.overflow);
     }
     judge(&why, code);
-    copy(12, Z, Z_out);
+    copy(NV, Z, Z_out);
     if (*code != OK) {
-        refuse(12, Z_out);
+        refuse(NV, Z_out);
     }
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[13*LANES], V_in[12*LANES], Z[12*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
-    V = side_by_side(12, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
     suspect(&why, code);
-    deliver(12, Z, Z_out);
+    deliver(NV, Z, Z_out);
 }
 
 INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(72, 1, H_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(72, H_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[13*LANES], H[72*LANES];
+    real X_in[NQ*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
     suspect(&why, code);
-    deliver(72, H, H_out);
+    deliver(NV*NU, H, H_out);
 }
 
 INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real q[24] = {0};
+    real q[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
     if (!is_finite(why.total[0])) {
-        check(24, 1, q, why.overflow);
+        check(NJ, 1, q, why.overflow);
     }
     judge(&why, code);
-    copy(24, q, q_out);
+    copy(NJ, q, q_out);
     if (*code != OK) {
-        refuse(24, q_out);
+        refuse(NJ, q_out);
     }
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[13*LANES], q[24*LANES];
+    real X_in[NQ*LANES], q[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
     suspect(&why, code);
-    deliver(24, q, q_out);
+    deliver(NJ, q, q_out);
 }
 
 INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real qd[24] = {0};
+    real qd[NJ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd, &why);
     if (!is_finite(why.total[0])) {
-        check(24, 1, qd, why.overflow);
+        check(NJ, 1, qd, why.overflow);
     }
     judge(&why, code);
-    copy(24, qd, qd_out);
+    copy(NJ, qd, qd_out);
     if (*code != OK) {
-        refuse(24, qd_out);
+        refuse(NJ, qd_out);
     }
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[13*LANES], V_in[12*LANES], qd[24*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
-    V = side_by_side(12, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
     suspect(&why, code);
-    deliver(24, qd, qd_out);
+    deliver(NJ, qd, qd_out);
 }
 
 INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real qdd[24] = {0};
+    real qdd[NJ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12) + total(A, 12);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
-        check(12, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd, &why);
     if (!is_finite(why.total[0])) {
-        check(24, 1, qdd, why.overflow);
+        check(NJ, 1, qdd, why.overflow);
     }
     judge(&why, code);
-    copy(24, qdd, qdd_out);
+    copy(NJ, qdd, qdd_out);
     if (*code != OK) {
-        refuse(24, qdd_out);
+        refuse(NJ, qdd_out);
     }
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[13*LANES], V_in[12*LANES], A_in[12*LANES], qdd[24*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
-    V = side_by_side(12, V, V_in, why.total);
-    A = side_by_side(12, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
     suspect(&why, code);
-    deliver(24, qdd, qdd_out);
+    deliver(NJ, qdd, qdd_out);
 }
 
 INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real M[144] = {0}, Z[12] = {0}, H[72] = {0};
+    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     dynamics_run(m, X, V, M, Z, H, &why);
     if (!is_finite(why.total[0])) {
-        check(144, 1, M, why.overflow);
-        check(12, 1, Z, why.overflow);
-        check(72, 1, H, why.overflow);
+        check(NV*NV, 1, M, why.overflow);
+        check(NV, 1, Z, why.overflow);
+        check(NV*NU, 1, H, why.overflow);
     }
     judge(&why, code);
-    copy(144, M, M_out);
-    copy(12, Z, Z_out);
-    copy(72, H, H_out);
+    copy(NV*NV, M, M_out);
+    copy(NV, Z, Z_out);
+    copy(NV*NU, H, H_out);
     if (*code != OK) {
-        refuse(144, M_out);
-        refuse(12, Z_out);
-        refuse(72, H_out);
+        refuse(NV*NV, M_out);
+        refuse(NV, Z_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[13*LANES], V_in[12*LANES], M[144*LANES], Z[12*LANES], H[72*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
-    V = side_by_side(12, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     suspect(&why, code);
-    deliver(144, M, M_out);
-    deliver(12, Z, Z_out);
-    deliver(72, H, H_out);
+    deliver(NV*NV, M, M_out);
+    deliver(NV, Z, Z_out);
+    deliver(NV*NU, H, H_out);
 }
 
-INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
+INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
+    real *a, const real *b, real *x, real *unsure, real *total)
 {
     for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(0)*w + k];
-        real a01 = a[(1)*w + k];
-        real a02 = a[(2)*w + k];
-        real a03 = a[(3)*w + k];
-        real a04 = a[(4)*w + k];
-        real a05 = a[(5)*w + k];
-        real b0 = b[0*w + k];
-        real a10 = a[(2*stride + 0)*w + k];
-        real a11 = a[(2*stride + 1)*w + k];
-        real a12 = a[(2*stride + 2)*w + k];
-        real a13 = a[(2*stride + 3)*w + k];
-        real a14 = a[(2*stride + 4)*w + k];
-        real a15 = a[(2*stride + 5)*w + k];
-        real b1 = b[2*w + k];
-        real a20 = a[(1*stride + 0)*w + k];
-        real a21 = a[(1*stride + 1)*w + k];
-        real a22 = a[(1*stride + 2)*w + k];
-        real a23 = a[(1*stride + 3)*w + k];
-        real a24 = a[(1*stride + 4)*w + k];
-        real a25 = a[(1*stride + 5)*w + k];
-        real b2 = b[1*w + k];
-        real a30 = a[(3*stride + 0)*w + k];
-        real a31 = a[(3*stride + 1)*w + k];
-        real a32 = a[(3*stride + 2)*w + k];
-        real a33 = a[(3*stride + 3)*w + k];
-        real a34 = a[(3*stride + 4)*w + k];
-        real a35 = a[(3*stride + 5)*w + k];
-        real b3 = b[3*w + k];
-        real a40 = a[(4*stride + 0)*w + k];
-        real a41 = a[(4*stride + 1)*w + k];
-        real a42 = a[(4*stride + 2)*w + k];
-        real a43 = a[(4*stride + 3)*w + k];
-        real a44 = a[(4*stride + 4)*w + k];
-        real a45 = a[(4*stride + 5)*w + k];
-        real b4 = b[4*w + k];
-        real a50 = a[(5*stride + 0)*w + k];
-        real a51 = a[(5*stride + 1)*w + k];
-        real a52 = a[(5*stride + 2)*w + k];
-        real a53 = a[(5*stride + 3)*w + k];
-        real a54 = a[(5*stride + 4)*w + k];
-        real a55 = a[(5*stride + 5)*w + k];
-        real b5 = b[5*w + k];
+        real a00 = a[(order[0]*stride + 0)*w + k];
+        real a01 = a[(order[0]*stride + 1)*w + k];
+        real a02 = a[(order[0]*stride + 2)*w + k];
+        real a03 = a[(order[0]*stride + 3)*w + k];
+        real a04 = a[(order[0]*stride + 4)*w + k];
+        real a05 = a[(order[0]*stride + 5)*w + k];
+        real b0 = b[order[0]*w + k];
+        real a10 = a[(order[1]*stride + 0)*w + k];
+        real a11 = a[(order[1]*stride + 1)*w + k];
+        real a12 = a[(order[1]*stride + 2)*w + k];
+        real a13 = a[(order[1]*stride + 3)*w + k];
+        real a14 = a[(order[1]*stride + 4)*w + k];
+        real a15 = a[(order[1]*stride + 5)*w + k];
+        real b1 = b[order[1]*w + k];
+        real a20 = a[(order[2]*stride + 0)*w + k];
+        real a21 = a[(order[2]*stride + 1)*w + k];
+        real a22 = a[(order[2]*stride + 2)*w + k];
+        real a23 = a[(order[2]*stride + 3)*w + k];
+        real a24 = a[(order[2]*stride + 4)*w + k];
+        real a25 = a[(order[2]*stride + 5)*w + k];
+        real b2 = b[order[2]*w + k];
+        real a30 = a[(order[3]*stride + 0)*w + k];
+        real a31 = a[(order[3]*stride + 1)*w + k];
+        real a32 = a[(order[3]*stride + 2)*w + k];
+        real a33 = a[(order[3]*stride + 3)*w + k];
+        real a34 = a[(order[3]*stride + 4)*w + k];
+        real a35 = a[(order[3]*stride + 5)*w + k];
+        real b3 = b[order[3]*w + k];
+        real a40 = a[(order[4]*stride + 0)*w + k];
+        real a41 = a[(order[4]*stride + 1)*w + k];
+        real a42 = a[(order[4]*stride + 2)*w + k];
+        real a43 = a[(order[4]*stride + 3)*w + k];
+        real a44 = a[(order[4]*stride + 4)*w + k];
+        real a45 = a[(order[4]*stride + 5)*w + k];
+        real b4 = b[order[4]*w + k];
+        real a50 = a[(order[5]*stride + 0)*w + k];
+        real a51 = a[(order[5]*stride + 1)*w + k];
+        real a52 = a[(order[5]*stride + 2)*w + k];
+        real a53 = a[(order[5]*stride + 3)*w + k];
+        real a54 = a[(order[5]*stride + 4)*w + k];
+        real a55 = a[(order[5]*stride + 5)*w + k];
+        real b5 = b[order[5]*w + k];
         const real f0 = 1/a00;
         const real d1 = a00*a11 - a10*a01;
         const real f1 = a00/d1;
@@ -5985,8 +6032,8 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         const real f5 = a44/d5;
         const real g54 = a54*f4;
         b5 -= g54*b4;
-        const real x5 = (b5)*f5;
-        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x5 = b5*f5;
+        const real x4 = b4*f4 - a45*f4*x5;
         const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
         const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
         const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
@@ -5998,474 +6045,328 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         x[4*w + k] = x4;
         x[5*w + k] = x5;
         total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
-        const real most0 = larger(larger(magnitude(g21), magnitude(g31)), larger(magnitude(g41),
-            magnitude(g51)));
-        const real most1 = larger(larger(larger(magnitude(g20), magnitude(g30)),
-            larger(magnitude(g40), larger(magnitude(g50), magnitude(g32)))),
-            larger(larger(magnitude(g42), magnitude(g52)), larger(magnitude(g43),
-            larger(magnitude(g53), magnitude(g54)))));
-        const real most2 = magnitude(g10);
-        const real most3 = magnitude(f1);
-        const real most4 = larger(larger(magnitude(f0), magnitude(f2)), larger(magnitude(f3),
-            larger(magnitude(f4), magnitude(f5))));
-        unsure[k] += UNLESS(most0 <= R(2.5)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(40)) +
-            UNLESS(most3 <= R(1000)) + UNLESS(most4 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22
-            + d3 + a44 + d5));
+        const real most0 = larger(larger(magnitude(g10)*(sizes[0]/sizes[1]),
+            magnitude(g20)*(sizes[0]/sizes[2])), larger(magnitude(g30)*(sizes[0]/sizes[3]),
+            larger(magnitude(g40)*(sizes[0]/sizes[4]), magnitude(g50)*(sizes[0]/sizes[5]))));
+        const real most1 = larger(larger(magnitude(g21)*(sizes[1]/sizes[2]),
+            magnitude(g31)*(sizes[1]/sizes[3])), larger(magnitude(g41)*(sizes[1]/sizes[4]),
+            magnitude(g51)*(sizes[1]/sizes[5])));
+        const real most2 = larger(magnitude(g32)*(sizes[2]/sizes[3]),
+            larger(magnitude(g42)*(sizes[2]/sizes[4]), magnitude(g52)*(sizes[2]/sizes[5])));
+        const real most3 = larger(magnitude(g43)*(sizes[3]/sizes[4]),
+            magnitude(g53)*(sizes[3]/sizes[5]));
+        const real most4 = magnitude(g54)*(sizes[4]/sizes[5]);
+        unsure[k] += UNLESS(larger(larger(magnitude(f0)*sizes[0], larger(magnitude(f1)*sizes[1],
+            magnitude(f2)*sizes[2])), larger(magnitude(f3)*sizes[3],
+            larger(magnitude(f4)*sizes[4], magnitude(f5)*sizes[5]))) <= R(1000));
+        unsure[k] += UNLESS(larger(larger(most0, most1), larger(most2, larger(most3, most4))) <=
+            R(10));
+        unsure[k] += UNLESS(is_finite(a00 + d1 + a22 + d3 + a44 + d5));
     }
 }
 
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real wrench_in[6], required[12] = {0}, H[72] = {0}, extend_1[12] = {0}, subtract_2[12] = {0},
-        unsure_5[1] = {0}, work[48];
+    static const size_t order_tau[] = {0, 2, 1, 3, 4, 5};
+    static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0},
+        unsure_tau[1] = {0}, work[NU*PADDED(NU)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12) + total(A, 12);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
-        check(12, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 12; ++i) {
-        extend_1[i] = i < 6 ? wrench[i] : 0;
+        extend_1[i] = i < NW ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 12; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    const real *const take_3 = H;
-    const real *const take_4 = subtract_2;
-    eliminate_0(1, 6, take_3, take_4, tau_out, unsure_5, why.total);
-    if (unsure_5[0] > 0) {
-        set_matrix(6, 1, take_3, work);
-        solve_apart(6, take_4, work, tau_out, why.singular);
-        check(6, 1, tau_out, why.overflow);
+    const real *const take_1 = H;
+    const real *const take_2 = subtract_1;
+    eliminate_6(1, NU, order_tau, sizes_tau, take_1, take_2, tau_out, unsure_tau, why.total);
+    if (unsure_tau[0] > 0) {
+        set_matrix(NU, 1, take_1, work);
+        solve_apart(NU, take_2, work, tau_out, why.singular);
+        check(NU, 1, tau_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
-        check(6, 1, tau_out, why.overflow);
+        check(NU, 1, tau_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, tau_out);
+        refuse(NU, tau_out);
     }
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[13*LANES], V_in[12*LANES], A_in[12*LANES], wrench_in[6*LANES], required[12*LANES],
-        H[72*LANES], extend_1[12*LANES], subtract_2[12*LANES], tau[6*LANES];
+    static const size_t order_tau[] = {0, 2, 1, 3, 4, 5};
+    static const real sizes_tau[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
+        H[NV*NU*LANES], extend_1[12*LANES], subtract_1[NV*LANES], tau[NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
-    V = side_by_side(12, V, V_in, why.total);
-    A = side_by_side(12, A, A_in, why.total);
-    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 12*LANES; ++i) {
-        extend_1[i] = i < 6*LANES ? wrench[i] : 0;
+        extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 12*LANES; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    const real *const take_3 = H;
-    const real *const take_4 = subtract_2;
-    eliminate_0(LANES, 6, take_3, take_4, tau, why.singular, why.total);
+    const real *const take_1 = H;
+    const real *const take_2 = subtract_1;
+    eliminate_6(LANES, NU, order_tau, sizes_tau, take_1, take_2, tau, why.singular, why.total);
     suspect(&why, code);
-    deliver(6, tau, tau_out);
+    deliver(NU, tau, tau_out);
 }
 
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, int *code)
 {
-    real wrench_in[6], M[144] = {0}, Z[12] = {0}, H[72] = {0}, times_1[12] = {0}, extend_2[12] = {0},
-        add_3[12] = {0}, subtract_4[12] = {0}, work[192];
+    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[12] =
+        {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12) + total(tau, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
-        check(6, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, &why);
-    product(12, 6, 1, 1, H, tau, times_1);
+    product(NV, NU, 1, 1, H, tau, times_1);
     for (size_t i = 0; i < 12; ++i) {
-        extend_2[i] = i < 6 ? wrench[i] : 0;
+        extend_1[i] = i < NW ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 12; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    for (size_t i = 0; i < NV; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 12; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    set_matrix(12, 1, M, work);
-    solve_state(12, subtract_4, work, A_out, why.singular);
-    check(12, 1, A_out, why.overflow);
+    set_matrix(NV, 1, M, work);
+    solve_state(NV, subtract_1, work, A_out, why.singular);
+    check(NV, 1, A_out, why.overflow);
     judge(&why, code);
     if (*code != OK) {
-        refuse(12, A_out);
+        refuse(NV, A_out);
     }
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[13*LANES], V_in[12*LANES], tau_in[6*LANES], wrench_in[6*LANES], M[144*LANES],
-        Z[12*LANES], H[72*LANES], times_1[12*LANES] = {0}, extend_2[12*LANES], add_3[12*LANES],
-        subtract_4[12*LANES], A[12*LANES], work[192*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
+        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, extend_1[12*LANES], add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES], work[NV*PADDED(NV)*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
-    V = side_by_side(12, V, V_in, why.total);
-    tau = side_by_side(6, tau, tau_in, why.total);
-    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    product(12, 6, 1, LANES, H, tau, times_1);
+    product(NV, NU, 1, LANES, H, tau, times_1);
     for (size_t i = 0; i < 12*LANES; ++i) {
-        extend_2[i] = i < 6*LANES ? wrench[i] : 0;
+        extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 12*LANES; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 12*LANES; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
-    set_matrix(12, LANES, M, work);
-    solve(12, LANES, subtract_4, work, A, why.singular);
-    add_up(12, A, why.total);
+    set_matrix(NV, LANES, M, work);
+    solve(NV, LANES, subtract_1, work, A, why.singular);
+    add_up(NV, A, why.total);
     suspect(&why, code);
-    deliver(12, A, A_out);
-}
-
-INLINE void eliminate_1(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
-{
-    for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(0)*w + k];
-        real a01 = a[(1)*w + k];
-        real a02 = a[(2)*w + k];
-        real a03 = a[(3)*w + k];
-        real a04 = a[(4)*w + k];
-        real a05 = a[(5)*w + k];
-        real b0 = b[0*w + k];
-        real a10 = a[(1*stride + 0)*w + k];
-        real a11 = a[(1*stride + 1)*w + k];
-        real a12 = a[(1*stride + 2)*w + k];
-        real a13 = a[(1*stride + 3)*w + k];
-        real a14 = a[(1*stride + 4)*w + k];
-        real a15 = a[(1*stride + 5)*w + k];
-        real b1 = b[1*w + k];
-        real a20 = a[(2*stride + 0)*w + k];
-        real a21 = a[(2*stride + 1)*w + k];
-        real a22 = a[(2*stride + 2)*w + k];
-        real a23 = a[(2*stride + 3)*w + k];
-        real a24 = a[(2*stride + 4)*w + k];
-        real a25 = a[(2*stride + 5)*w + k];
-        real b2 = b[2*w + k];
-        real a30 = a[(3*stride + 0)*w + k];
-        real a31 = a[(3*stride + 1)*w + k];
-        real a32 = a[(3*stride + 2)*w + k];
-        real a33 = a[(3*stride + 3)*w + k];
-        real a34 = a[(3*stride + 4)*w + k];
-        real a35 = a[(3*stride + 5)*w + k];
-        real b3 = b[3*w + k];
-        real a40 = a[(4*stride + 0)*w + k];
-        real a41 = a[(4*stride + 1)*w + k];
-        real a42 = a[(4*stride + 2)*w + k];
-        real a43 = a[(4*stride + 3)*w + k];
-        real a44 = a[(4*stride + 4)*w + k];
-        real a45 = a[(4*stride + 5)*w + k];
-        real b4 = b[4*w + k];
-        real a50 = a[(5*stride + 0)*w + k];
-        real a51 = a[(5*stride + 1)*w + k];
-        real a52 = a[(5*stride + 2)*w + k];
-        real a53 = a[(5*stride + 3)*w + k];
-        real a54 = a[(5*stride + 4)*w + k];
-        real a55 = a[(5*stride + 5)*w + k];
-        real b5 = b[5*w + k];
-        const real f0 = 1/a00;
-        const real d1 = a00*a11 - a10*a01;
-        const real f1 = a00/d1;
-        const real g10 = a10*f0;
-        a12 -= g10*a02;
-        a13 -= g10*a03;
-        a14 -= g10*a04;
-        a15 -= g10*a05;
-        b1 -= g10*b0;
-        const real g20 = a20*f0;
-        a21 -= g20*a01;
-        a22 -= g20*a02;
-        a23 -= g20*a03;
-        a24 -= g20*a04;
-        a25 -= g20*a05;
-        b2 -= g20*b0;
-        const real g30 = a30*f0;
-        a31 -= g30*a01;
-        a32 -= g30*a02;
-        a33 -= g30*a03;
-        a34 -= g30*a04;
-        a35 -= g30*a05;
-        b3 -= g30*b0;
-        const real g40 = a40*f0;
-        a41 -= g40*a01;
-        a42 -= g40*a02;
-        a43 -= g40*a03;
-        a44 -= g40*a04;
-        a45 -= g40*a05;
-        b4 -= g40*b0;
-        const real g50 = a50*f0;
-        a51 -= g50*a01;
-        a52 -= g50*a02;
-        a53 -= g50*a03;
-        a54 -= g50*a04;
-        a55 -= g50*a05;
-        b5 -= g50*b0;
-        const real g21 = a21*f1;
-        a22 -= g21*a12;
-        a23 -= g21*a13;
-        a24 -= g21*a14;
-        a25 -= g21*a15;
-        b2 -= g21*b1;
-        const real g31 = a31*f1;
-        a32 -= g31*a12;
-        a33 -= g31*a13;
-        a34 -= g31*a14;
-        a35 -= g31*a15;
-        b3 -= g31*b1;
-        const real g41 = a41*f1;
-        a42 -= g41*a12;
-        a43 -= g41*a13;
-        a44 -= g41*a14;
-        a45 -= g41*a15;
-        b4 -= g41*b1;
-        const real g51 = a51*f1;
-        a52 -= g51*a12;
-        a53 -= g51*a13;
-        a54 -= g51*a14;
-        a55 -= g51*a15;
-        b5 -= g51*b1;
-        const real f2 = 1/a22;
-        const real d3 = a22*a33 - a32*a23;
-        const real f3 = a22/d3;
-        const real g32 = a32*f2;
-        a34 -= g32*a24;
-        a35 -= g32*a25;
-        b3 -= g32*b2;
-        const real g42 = a42*f2;
-        a43 -= g42*a23;
-        a44 -= g42*a24;
-        a45 -= g42*a25;
-        b4 -= g42*b2;
-        const real g52 = a52*f2;
-        a53 -= g52*a23;
-        a54 -= g52*a24;
-        a55 -= g52*a25;
-        b5 -= g52*b2;
-        const real g43 = a43*f3;
-        a44 -= g43*a34;
-        a45 -= g43*a35;
-        b4 -= g43*b3;
-        const real g53 = a53*f3;
-        a54 -= g53*a34;
-        a55 -= g53*a35;
-        b5 -= g53*b3;
-        const real f4 = 1/a44;
-        const real d5 = a44*a55 - a54*a45;
-        const real f5 = a44/d5;
-        const real g54 = a54*f4;
-        b5 -= g54*b4;
-        const real x5 = (b5)*f5;
-        const real x4 = (b4)*f4 - a45*f4*x5;
-        const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
-        const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
-        const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
-        const real x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2)*f0 - a01*f0*x1;
-        x[0*w + k] = x0;
-        x[1*w + k] = x1;
-        x[2*w + k] = x2;
-        x[3*w + k] = x3;
-        x[4*w + k] = x4;
-        x[5*w + k] = x5;
-        total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
-        const real most0 = larger(larger(larger(magnitude(g10), larger(magnitude(g20),
-            magnitude(g30))), larger(larger(magnitude(g40), magnitude(g50)),
-            larger(magnitude(g21), magnitude(g31)))), larger(larger(larger(magnitude(g41),
-            magnitude(g51)), larger(magnitude(g32), magnitude(g42))),
-            larger(larger(magnitude(g52), magnitude(g43)), larger(magnitude(g53),
-            magnitude(g54)))));
-        const real most1 = larger(larger(magnitude(f0), larger(magnitude(f1), magnitude(f2))),
-            larger(magnitude(f3), larger(magnitude(f4), magnitude(f5))));
-        unsure[k] += UNLESS(most0 <= R(10)) + UNLESS(most1 <= R(1024000)) + UNLESS(is_finite(a00 +
-            d1 + a22 + d3 + a44 + d5));
-    }
+    deliver(NV, A, A_out);
 }
 
 INLINE void complete_acceleration_one(const prepared *m, const real *X, const real *V, const real
     *A, const real *wrench, real *completed_out, int *code)
 {
-    static const size_t places_0[] = {6, 7, 8, 9, 10, 11};
-    static const size_t places_1[] = {6, 7, 8, 9, 10, 11};
-    static const size_t places_2[] = {6, 7, 8, 9, 10, 11};
-    real wrench_in[6], clear_at_1[12] = {0}, M[144] = {0}, Z[12] = {0}, H[72] = {0}, times_2[12] =
-        {0}, add_3[12] = {0}, extend_4[12] = {0}, subtract_5[12] = {0}, take_columns_6[72] = {0},
-        negative_9[6] = {0}, solve_10[6] = {0}, unsure_12[1] = {0}, completed[12] = {0}, work[48];
+    static const size_t places_clear_at_1[] = {6, 7, 8, 9, 10, 11};
+    static const size_t places_take_columns_1[] = {6, 7, 8, 9, 10, 11};
+    static const size_t order_solve_1[] = {0, 1, 2, 3, 4, 5};
+    static const real sizes_solve_1[] = {0.0009765625, 0.0009765625, 0.0009765625, 0.0009765625,
+        0.0009765625, 0.0009765625};
+    static const size_t places_completed[] = {6, 7, 8, 9, 10, 11};
+    real wrench_in[NW], clear_at_1[NV] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV]
+        = {0}, add_1[NV] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0}, take_columns_1[6*NV] = {0},
+        negative_1[6] = {0}, solve_1[6] = {0}, unsure_solve_1[1] = {0}, completed[NV] = {0},
+        work[6*PADDED(6)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12) + total(A, 12);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
-        check(12, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
-    for (size_t i = 0; i < 12; ++i) {
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    for (size_t i = 0; i < NV; ++i) {
         clear_at_1[i] = A[i];
     }
-    clear_at(6, 1, places_0, clear_at_1);
+    clear_at(6, 1, places_clear_at_1, clear_at_1);
     dynamics_run(m, X, V, M, Z, H, &why);
-    product(12, 12, 1, 1, M, clear_at_1, times_2);
-    for (size_t i = 0; i < 12; ++i) {
-        add_3[i] = times_2[i] + Z[i];
+    product(NV, NV, 1, 1, M, clear_at_1, times_1);
+    for (size_t i = 0; i < NV; ++i) {
+        add_1[i] = times_1[i] + Z[i];
     }
     for (size_t i = 0; i < 12; ++i) {
-        extend_4[i] = i < 6 ? wrench[i] : 0;
+        extend_1[i] = i < NW ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 12; ++i) {
-        subtract_5[i] = add_3[i] - extend_4[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = add_1[i] - extend_1[i];
     }
-    take_columns(12, 12, 6, 1, places_1, M, take_columns_6);
-    const real *const take_7 = take_columns_6 + 36;
-    const real *const take_8 = subtract_5 + 6;
+    take_columns(NV, NV, 6, 1, places_take_columns_1, M, take_columns_1);
+    const real *const take_1 = take_columns_1 + 36;
+    const real *const take_2 = subtract_1 + 6;
     for (size_t i = 0; i < 6; ++i) {
-        negative_9[i] = -take_8[i];
+        negative_1[i] = -take_2[i];
     }
-    eliminate_1(1, 6, take_7, negative_9, solve_10, unsure_12, why.total);
-    if (unsure_12[0] > 0) {
-        set_matrix(6, 1, take_7, work);
-        solve_apart(6, negative_9, work, solve_10, why.singular);
-        check(6, 1, solve_10, why.overflow);
+    eliminate_6(1, 6, order_solve_1, sizes_solve_1, take_1, negative_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(6, 1, take_1, work);
+        solve_apart(6, negative_1, work, solve_1, why.singular);
+        check(6, 1, solve_1, why.overflow);
     }
-    for (size_t i = 0; i < 12; ++i) {
+    for (size_t i = 0; i < NV; ++i) {
         completed[i] = clear_at_1[i];
     }
-    add_at(6, 1, places_2, solve_10, completed);
-    check(12, 1, completed, why.overflow);
+    add_at(6, 1, places_completed, solve_1, completed);
+    check(NV, 1, completed, why.overflow);
     judge(&why, code);
-    copy(12, completed, completed_out);
+    copy(NV, completed, completed_out);
     if (*code != OK) {
-        refuse(12, completed_out);
+        refuse(NV, completed_out);
     }
 }
 
 INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const real *V, const
     real *A, const real *wrench, real *completed_out, int *code)
 {
-    static const size_t places_0[] = {6, 7, 8, 9, 10, 11};
-    static const size_t places_1[] = {6, 7, 8, 9, 10, 11};
-    static const size_t places_2[] = {6, 7, 8, 9, 10, 11};
-    real X_in[13*LANES], V_in[12*LANES], A_in[12*LANES], wrench_in[6*LANES], clear_at_1[12*LANES],
-        M[144*LANES], Z[12*LANES], H[72*LANES], times_2[12*LANES] = {0}, add_3[12*LANES],
-        extend_4[12*LANES], subtract_5[12*LANES], take_columns_6[72*LANES] = {0}, negative_9[6*LANES],
-        solve_10[6*LANES], completed[12*LANES];
+    static const size_t places_clear_at_1[] = {6, 7, 8, 9, 10, 11};
+    static const size_t places_take_columns_1[] = {6, 7, 8, 9, 10, 11};
+    static const size_t order_solve_1[] = {0, 1, 2, 3, 4, 5};
+    static const real sizes_solve_1[] = {0.0009765625, 0.0009765625, 0.0009765625, 0.0009765625,
+        0.0009765625, 0.0009765625};
+    static const size_t places_completed[] = {6, 7, 8, 9, 10, 11};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], clear_at_1[NV*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        extend_1[12*LANES], subtract_1[NV*LANES], take_columns_1[6*NV*LANES] = {0},
+        negative_1[6*LANES], solve_1[6*LANES], completed[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
-    V = side_by_side(12, V, V_in, why.total);
-    A = side_by_side(12, A, A_in, why.total);
-    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
-    for (size_t i = 0; i < 12*LANES; ++i) {
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
+    for (size_t i = 0; i < NV*LANES; ++i) {
         clear_at_1[i] = A[i];
     }
-    clear_at(6, 1*LANES, places_0, clear_at_1);
+    clear_at(6, LANES, places_clear_at_1, clear_at_1);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
-    product(12, 12, 1, LANES, M, clear_at_1, times_2);
-    for (size_t i = 0; i < 12*LANES; ++i) {
-        add_3[i] = times_2[i] + Z[i];
+    product(NV, NV, 1, LANES, M, clear_at_1, times_1);
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        add_1[i] = times_1[i] + Z[i];
     }
     for (size_t i = 0; i < 12*LANES; ++i) {
-        extend_4[i] = i < 6*LANES ? wrench[i] : 0;
+        extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 12*LANES; ++i) {
-        subtract_5[i] = add_3[i] - extend_4[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = add_1[i] - extend_1[i];
     }
-    take_columns(12, 12, 6, LANES, places_1, M, take_columns_6);
-    const real *const take_7 = take_columns_6 + 36*LANES;
-    const real *const take_8 = subtract_5 + 6*LANES;
+    take_columns(NV, NV, 6, LANES, places_take_columns_1, M, take_columns_1);
+    const real *const take_1 = take_columns_1 + 36*LANES;
+    const real *const take_2 = subtract_1 + 6*LANES;
     for (size_t i = 0; i < 6*LANES; ++i) {
-        negative_9[i] = -take_8[i];
+        negative_1[i] = -take_2[i];
     }
-    eliminate_1(LANES, 6, take_7, negative_9, solve_10, why.singular, why.total);
-    for (size_t i = 0; i < 12*LANES; ++i) {
+    eliminate_6(LANES, 6, order_solve_1, sizes_solve_1, take_1, negative_1, solve_1, why.singular, why.total);
+    for (size_t i = 0; i < NV*LANES; ++i) {
         completed[i] = clear_at_1[i];
     }
-    add_at(6, 1*LANES, places_2, solve_10, completed);
-    add_up(12, completed, why.total);
+    add_at(6, LANES, places_completed, solve_1, completed);
+    add_up(NV, completed, why.total);
     suspect(&why, code);
-    deliver(12, completed, completed_out);
+    deliver(NV, completed, completed_out);
 }
 
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
-    real wrench_in[6], required[12] = {0}, H[72] = {0}, extend_1[12] = {0}, subtract_2[12] = {0},
-        solve_5[6] = {0}, unsure_6[1] = {0}, leg_force[18] = {0}, drive[18] = {0}, forces[18] = {0},
-        work[48];
+    static const size_t order_solve_1[] = {0, 2, 1, 3, 4, 5};
+    static const real sizes_solve_1[] = {0.25, 1.0, 0.25, 0.25, 0.25, 0.25};
+    static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0},
+        solve_1[NU] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0},
+        forces[3*NL] = {0}, work[NU*PADDED(NU)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12) + total(A, 12);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
-        check(12, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, &why);
     for (size_t i = 0; i < 12; ++i) {
-        extend_1[i] = i < 6 ? wrench[i] : 0;
+        extend_1[i] = i < NW ? wrench[i] : 0;
     }
-    for (size_t i = 0; i < 12; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    const real *const take_3 = H;
-    const real *const take_4 = subtract_2;
-    eliminate_0(1, 6, take_3, take_4, solve_5, unsure_6, why.total);
-    if (unsure_6[0] > 0) {
-        set_matrix(6, 1, take_3, work);
-        solve_apart(6, take_4, work, solve_5, why.singular);
-        check(6, 1, solve_5, why.overflow);
+    const real *const take_1 = H;
+    const real *const take_2 = subtract_1;
+    eliminate_6(1, NU, order_solve_1, sizes_solve_1, take_1, take_2, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NU, 1, take_1, work);
+        solve_apart(NU, take_2, work, solve_1, why.singular);
+        check(NU, 1, solve_1, why.overflow);
     }
-    legs_run(m, X, V, A, leg_force, drive, &why);
-    for (size_t i = 0; i < 18; ++i) {
+    legs_run(m, X, V, A, leg_force, actuator, &why);
+    for (size_t i = 0; i < 3*NL; ++i) {
         forces[i] = leg_force[i];
     }
-    add_forces(6, 3, 1, places_0, solve_5, drive, forces);
-    check(18, 1, forces, why.overflow);
+    add_forces(NL, 3, 1, places_forces, solve_1, actuator, forces);
+    check(3*NL, 1, forces, why.overflow);
     judge(&why, code);
-    copy(18, forces, forces_out);
+    copy(3*NL, forces, forces_out);
     if (*code != OK) {
-        refuse(18, forces_out);
+        refuse(3*NL, forces_out);
     }
 }
 
 INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
-    real M[144] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
-    half_form(12, 1, V, M, kinetic);
+    half_form(NV, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
@@ -6481,12 +6382,12 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
 INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
-    static const size_t places_0[] = {3, 4, 5, 6, 7, 8, 9, 10, 11};
-    real length_in[1], H[72] = {0}, lengths[2] = {0}, legs[6] = {0}, reach[6] = {0},
-        choose_length_1[1] = {0}, divide_rows_2[72] = {0}, sigma[6] = {0};
+    static const size_t places_divide_rows_1[] = {3, 4, 5, 6, 7, 8, 9, 10, 11};
+    real length_in[1], H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, lengths, legs, reach, &why);
@@ -6494,46 +6395,45 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 72; ++i) {
-        divide_rows_2[i] = H[i];
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
     }
-    divide_rows(9, 6, 1, places_0, choose_length_1, divide_rows_2);
-    singular_values(12, 6, divide_rows_2, sigma);
+    divide_rows(9, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(6, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(6, 1, sigma, why.overflow);
+    check(NU, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(6, sigma, sigma_out);
-    copy(6, legs, legs_out);
+    copy(NU, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(6, sigma_out);
-        refuse(6, legs_out);
+        refuse(NU, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
-    real q[24] = {0}, take_1[6] = {0}, gap[6] = {0};
+    real q[NJ] = {0}, take_1[6] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(q_actuated, 6);
+    const real total_in = total(X, NQ) + total(q_actuated, NU);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(6, 1, q_actuated, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(6, 1, places_0, q, take_1);
-    for (size_t i = 0; i < 6; ++i) {
+    take(6, 1, stewart_sps_ACTUATED, q, take_1);
+    for (size_t i = 0; i < NU; ++i) {
         gap[i] = q_actuated[i] - take_1[i];
     }
-    check(6, 1, gap, why.overflow);
+    check(NU, 1, gap, why.overflow);
     judge(&why, code);
-    copy(6, gap, gap_out);
+    copy(NU, gap, gap_out);
     if (*code != OK) {
-        refuse(6, gap_out);
+        refuse(NU, gap_out);
     }
 }
 
@@ -6541,23 +6441,23 @@ static void slope_one(const prepared *m, const real *X, real *slope_out, int *co
 {
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
-        check(72, 1, slope_out, why.overflow);
+        check(NV*NU, 1, slope_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(72, slope_out);
+        refuse(NV*NU, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
-    enum { N = 6, NV = 12, TRIALS = 12 };
+    enum { N = NU, TRIALS = 12 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[13] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     mismatch_one(m, found, q_actuated, gap, &code);
@@ -6600,30 +6500,30 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
-    real X[13] = {0};
+    real X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(q_actuated, 6) + total(X0, 13);
+    const real total_in = total(q_actuated, NU) + total(X0, NQ);
     if (!is_finite(total_in)) {
-        check(6, 1, q_actuated, why.invalid);
-        check(13, 1, X0, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
+        check(NQ, 1, X0, why.invalid);
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(13, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(13, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(13, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
-    real subtract_1[12] = {0};
+    real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
-    check(12, 1, V, why.invalid);
-    for (size_t i = 0; i < 12; ++i) {
+    check(NV, 1, V, why.invalid);
+    for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
@@ -6638,85 +6538,87 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
     *code)
 {
-    real M[144] = {0}, momentum[12] = {0};
+    real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
-    product(12, 12, 1, 1, M, V, momentum);
-    check(12, 1, momentum, why.overflow);
+    product(NV, NV, 1, 1, M, V, momentum);
+    check(NV, 1, momentum, why.overflow);
     judge(&why, code);
-    copy(12, momentum, momentum_out);
+    copy(NV, momentum, momentum_out);
     if (*code != OK) {
-        refuse(12, momentum_out);
+        refuse(NV, momentum_out);
     }
 }
 
 INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
     int *code)
 {
-    real X_in[13*LANES], V_in[12*LANES], M[144*LANES], momentum[12*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
-    V = side_by_side(12, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     M_run_lanes(m, X, M, &why);
-    product(12, 12, 1, LANES, M, V, momentum);
-    add_up(12, momentum, why.total);
+    product(NV, NV, 1, LANES, M, V, momentum);
+    add_up(NV, momentum, why.total);
     suspect(&why, code);
-    deliver(12, momentum, momentum_out);
+    deliver(NV, momentum, momentum_out);
 }
 
 INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
-    real q[24] = {0}, margins[24] = {0};
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
+        17, 18, 19, 20, 21, 22, 23};
+    real q[NJ] = {0}, margins[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 24; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
-    unlimited(24, 24, 1, places_0, margins, why.overflow);
+    unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     judge(&why, code);
-    copy(24, margins, margins_out);
+    copy(NJ, margins, margins_out);
     if (*code != OK) {
-        refuse(24, margins_out);
+        refuse(NJ, margins_out);
     }
 }
 
 INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
-    real X_in[13*LANES], q[24*LANES], margins[24*LANES];
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
+        17, 18, 19, 20, 21, 22, 23};
+    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 24*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         margins[i] = q[i];
     }
-    unlimited(24, 24, LANES, places_0, margins, why.invalid);
+    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
     suspect(&why, code);
-    deliver(24, margins, margins_out);
+    deliver(NJ, margins, margins_out);
 }
 
 INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real q[24] = {0}, subtract_1[24] = {0}, within[1] = {0};
+    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 24; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(24, 1, subtract_1, within, why.overflow);
+    not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     judge(&why, code);
     copy(1, within, within_out);
@@ -6727,15 +6629,15 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
 
 INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real X_in[13*LANES], q[24*LANES], subtract_1[24*LANES], within[1*LANES] = {0};
+    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 24*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(24, LANES, subtract_1, within, why.invalid);
+    not_negative(NJ, LANES, subtract_1, within, why.invalid);
     add_up(1, within, why.total);
     suspect(&why, code);
     deliver(1, within, within_out);
@@ -6743,129 +6645,123 @@ INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_o
 
 INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
-    real q_of_inverse_kinematics[24] = {0}, q[6] = {0};
+    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
-    take(6, 1, places_0, q_of_inverse_kinematics, q);
-    check(6, 1, q, why.overflow);
+    take(NU, 1, stewart_sps_ACTUATED, q_of_inverse_kinematics, q);
+    check(NU, 1, q, why.overflow);
     judge(&why, code);
-    copy(6, q, q_out);
+    copy(NU, q, q_out);
     if (*code != OK) {
-        refuse(6, q_out);
+        refuse(NU, q_out);
     }
 }
 
 INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
-    real X_in[13*LANES], q_of_inverse_kinematics[24*LANES], q[6*LANES] = {0};
+    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(6, 1*LANES, places_0, q_of_inverse_kinematics, q);
-    add_up(6, q, why.total);
+    take(NU, LANES, stewart_sps_ACTUATED, q_of_inverse_kinematics, q);
+    add_up(NU, q, why.total);
     suspect(&why, code);
-    deliver(6, q, q_out);
+    deliver(NU, q, q_out);
 }
 
 INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
-    real qd_of_joint_rates[24] = {0}, qd[6] = {0};
+    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
-    take(6, 1, places_0, qd_of_joint_rates, qd);
-    check(6, 1, qd, why.overflow);
+    take(NU, 1, stewart_sps_ACTUATED, qd_of_joint_rates, qd);
+    check(NU, 1, qd, why.overflow);
     judge(&why, code);
-    copy(6, qd, qd_out);
+    copy(NU, qd, qd_out);
     if (*code != OK) {
-        refuse(6, qd_out);
+        refuse(NU, qd_out);
     }
 }
 
 INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
     int *code)
 {
-    static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
-    real X_in[13*LANES], V_in[12*LANES], qd_of_joint_rates[24*LANES], qd[6*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
-    V = side_by_side(12, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(6, 1*LANES, places_0, qd_of_joint_rates, qd);
-    add_up(6, qd, why.total);
+    take(NU, LANES, stewart_sps_ACTUATED, qd_of_joint_rates, qd);
+    add_up(NU, qd, why.total);
     suspect(&why, code);
-    deliver(6, qd, qd_out);
+    deliver(NU, qd, qd_out);
 }
 
 INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
-    real qdd_of_joint_accelerations[24] = {0}, qdd[6] = {0};
+    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12) + total(A, 12);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
-        check(12, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(6, 1, places_0, qdd_of_joint_accelerations, qdd);
-    check(6, 1, qdd, why.overflow);
+    take(NU, 1, stewart_sps_ACTUATED, qdd_of_joint_accelerations, qdd);
+    check(NU, 1, qdd, why.overflow);
     judge(&why, code);
-    copy(6, qdd, qdd_out);
+    copy(NU, qdd, qdd_out);
     if (*code != OK) {
-        refuse(6, qdd_out);
+        refuse(NU, qdd_out);
     }
 }
 
 INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {3, 7, 11, 15, 19, 23};
-    real X_in[13*LANES], V_in[12*LANES], A_in[12*LANES], qdd_of_joint_accelerations[24*LANES],
-        qdd[6*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
+        qdd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
-    V = side_by_side(12, V, V_in, why.total);
-    A = side_by_side(12, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(6, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
-    add_up(6, qdd, why.total);
+    take(NU, LANES, stewart_sps_ACTUATED, qdd_of_joint_accelerations, qdd);
+    add_up(NU, qdd, why.total);
     suspect(&why, code);
-    deliver(6, qdd, qdd_out);
+    deliver(NU, qdd, qdd_out);
 }
 
 INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real H[72] = {0}, times_1[12] = {0}, power[1] = {0};
+    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12) + total(tau, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
-        check(6, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
     H_run(m, X, H, &why);
-    product(12, 6, 1, 1, H, tau, times_1);
-    inner(12, 1, times_1, V, power);
+    product(NV, NU, 1, 1, H, tau, times_1);
+    inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     judge(&why, code);
     copy(1, power, power_out);
@@ -6877,16 +6773,16 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
 INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real X_in[13*LANES], V_in[12*LANES], tau_in[6*LANES], H[72*LANES], times_1[12*LANES] = {0},
-        power[1*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        power[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(13, X, X_in, why.total);
-    V = side_by_side(12, V, V_in, why.total);
-    tau = side_by_side(6, tau, tau_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
     H_run_lanes(m, X, H, &why);
-    product(12, 6, 1, LANES, H, tau, times_1);
-    inner(12, LANES, times_1, V, power);
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    inner(NV, LANES, times_1, V, power);
     add_up(1, power, why.total);
     suspect(&why, code);
     deliver(1, power, power_out);
@@ -6897,7 +6793,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     real R[9] = {0};
     verdict why;
     start(1, &why);
-    check(13, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     const real *const take_1 = X + 3;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
@@ -6910,7 +6806,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
 
 INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0}, X[13] = {0};
+    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 3) + total(R, 9);
@@ -6919,46 +6815,46 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
         check(9, 1, R, why.invalid);
     }
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
-    for (size_t i = 0; i < 13; ++i) {
-        X[i] = i < 7 ? join_2[i] : 0;
+    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
+    for (size_t i = 0; i < NQ; ++i) {
+        X[i] = i < 7 ? join_1[i] : 0;
     }
-    check(13, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(13, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(13, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
-    real quaternion_rate_3[4] = {0}, join_5[7] = {0}, X_dot[13] = {0};
+    real quaternion_rate_1[4] = {0}, join_1[7] = {0}, X_dot[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(V, 12);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     const real *const take_1 = V + 3;
     const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_3);
-    const real *const take_4 = V;
-    beside(1, 3, 4, take_4, quaternion_rate_3, join_5);
-    const real *const take_6 = V + 6;
-    beside(1, 7, 6, join_5, take_6, X_dot);
-    check(13, 1, X_dot, why.overflow);
+    quaternion_rate(take_2, take_1, quaternion_rate_1);
+    const real *const take_3 = V;
+    beside(1, 3, 4, take_3, quaternion_rate_1, join_1);
+    const real *const take_4 = V + 6;
+    beside(1, 7, 6, join_1, take_4, X_dot);
+    check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
-    copy(13, X_dot, X_dot_out);
+    copy(NQ, X_dot, X_dot_out);
     if (*code != OK) {
-        refuse(13, X_dot_out);
+        refuse(NQ, X_dot_out);
     }
 }
 
 INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0}, X[13] = {0};
+    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 3) + total(rpy, 3);
@@ -6967,28 +6863,28 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
         check(3, 1, rpy, why.invalid);
     }
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
-    for (size_t i = 0; i < 13; ++i) {
-        X[i] = i < 7 ? join_2[i] : 0;
+    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
+    for (size_t i = 0; i < NQ; ++i) {
+        X[i] = i < 7 ? join_1[i] : 0;
     }
-    check(13, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(13, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(13, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
-    real turn_quaternion_7[4] = {0}, add_8[3] = {0}, add_9[6] = {0}, join_10[7] = {0}, X_moved[13] =
+    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[6] = {0}, join_1[7] = {0}, X_moved[NQ] =
         {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 13) + total(step, 12);
+    const real total_in = total(X, NQ) + total(step, NV);
     if (!is_finite(total_in)) {
-        check(13, 1, X, why.invalid);
-        check(12, 1, step, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, step, why.invalid);
     }
     const real *const take_1 = X;
     const real *const take_2 = X + 3;
@@ -6996,33 +6892,33 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
     const real *const take_4 = step;
     const real *const take_5 = step + 3;
     const real *const take_6 = step + 6;
-    turn_quaternion(take_2, take_5, turn_quaternion_7);
+    turn_quaternion(take_2, take_5, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_8[i] = take_1[i] + take_4[i];
+        add_1[i] = take_1[i] + take_4[i];
     }
     for (size_t i = 0; i < 6; ++i) {
-        add_9[i] = take_3[i] + take_6[i];
+        add_2[i] = take_3[i] + take_6[i];
     }
-    beside(1, 3, 4, add_8, turn_quaternion_7, join_10);
-    beside(1, 7, 6, join_10, add_9, X_moved);
-    check(13, 1, X_moved, why.overflow);
+    beside(1, 3, 4, add_1, turn_quaternion_1, join_1);
+    beside(1, 7, 6, join_1, add_2, X_moved);
+    check(NQ, 1, X_moved, why.overflow);
     judge(&why, code);
-    copy(13, X_moved, X_moved_out);
+    copy(NQ, X_moved, X_moved_out);
     if (*code != OK) {
-        refuse(13, X_moved_out);
+        refuse(NQ, X_moved_out);
     }
 }
 
 INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
-    real turn_between_7[3] = {0}, subtract_8[3] = {0}, subtract_9[6] = {0}, join_10[6] = {0}, step[12]
+    real turn_between_1[3] = {0}, subtract_1[3] = {0}, subtract_2[6] = {0}, join_1[6] = {0}, step[NV]
         = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 13) + total(X1, 13);
+    const real total_in = total(X0, NQ) + total(X1, NQ);
     if (!is_finite(total_in)) {
-        check(13, 1, X0, why.invalid);
-        check(13, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
     }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
@@ -7030,34 +6926,34 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
     const real *const take_4 = X1;
     const real *const take_5 = X1 + 3;
     const real *const take_6 = X1 + 7;
-    turn_between(take_2, take_5, turn_between_7);
+    turn_between(take_2, take_5, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_8[i] = take_4[i] - take_1[i];
+        subtract_1[i] = take_4[i] - take_1[i];
     }
     for (size_t i = 0; i < 6; ++i) {
-        subtract_9[i] = take_6[i] - take_3[i];
+        subtract_2[i] = take_6[i] - take_3[i];
     }
-    beside(1, 3, 3, subtract_8, turn_between_7, join_10);
-    beside(1, 6, 6, join_10, subtract_9, step);
-    check(12, 1, step, why.overflow);
+    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    beside(1, 6, 6, join_1, subtract_2, step);
+    check(NV, 1, step, why.overflow);
     judge(&why, code);
-    copy(12, step, step_out);
+    copy(NV, step, step_out);
     if (*code != OK) {
-        refuse(12, step_out);
+        refuse(NV, step_out);
     }
 }
 
 INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    real turn_between_7[3] = {0}, subtract_8[3] = {0}, subtract_9[6] = {0}, join_10[6] = {0},
-        join_11[12] = {0}, scale_12[12] = {0}, turn_quaternion_19[4] = {0}, add_20[3] = {0}, add_21[6]
-        = {0}, join_22[7] = {0}, X[13] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] = {0}, subtract_2[6] = {0}, join_1[6] = {0},
+        join_2[12] = {0}, scale_1[12] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[6] =
+        {0}, join_3[7] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 13) + total(X1, 13) + total(s, 1);
+    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
     if (!is_finite(total_in)) {
-        check(13, 1, X0, why.invalid);
-        check(13, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
     const real *const take_1 = X0;
@@ -7066,38 +6962,38 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
     const real *const take_4 = X1;
     const real *const take_5 = X1 + 3;
     const real *const take_6 = X1 + 7;
-    turn_between(take_2, take_5, turn_between_7);
+    turn_between(take_2, take_5, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_8[i] = take_4[i] - take_1[i];
+        subtract_1[i] = take_4[i] - take_1[i];
     }
     for (size_t i = 0; i < 6; ++i) {
-        subtract_9[i] = take_6[i] - take_3[i];
+        subtract_2[i] = take_6[i] - take_3[i];
     }
-    beside(1, 3, 3, subtract_8, turn_between_7, join_10);
-    beside(1, 6, 6, join_10, subtract_9, join_11);
+    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
+    beside(1, 6, 6, join_1, subtract_2, join_2);
     for (size_t i = 0; i < 12; ++i) {
-        scale_12[i] = join_11[i]*s[i%(1)];
+        scale_1[i] = join_2[i]*s[i%(1)];
     }
-    const real *const take_13 = X0;
-    const real *const take_14 = X0 + 3;
-    const real *const take_15 = X0 + 7;
-    const real *const take_16 = scale_12;
-    const real *const take_17 = scale_12 + 3;
-    const real *const take_18 = scale_12 + 6;
-    turn_quaternion(take_14, take_17, turn_quaternion_19);
+    const real *const take_7 = X0;
+    const real *const take_8 = X0 + 3;
+    const real *const take_9 = X0 + 7;
+    const real *const take_10 = scale_1;
+    const real *const take_11 = scale_1 + 3;
+    const real *const take_12 = scale_1 + 6;
+    turn_quaternion(take_8, take_11, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_20[i] = take_13[i] + take_16[i];
+        add_1[i] = take_7[i] + take_10[i];
     }
     for (size_t i = 0; i < 6; ++i) {
-        add_21[i] = take_15[i] + take_18[i];
+        add_2[i] = take_9[i] + take_12[i];
     }
-    beside(1, 3, 4, add_20, turn_quaternion_19, join_22);
-    beside(1, 7, 6, join_22, add_21, X);
-    check(13, 1, X, why.overflow);
+    beside(1, 3, 4, add_1, turn_quaternion_1, join_3);
+    beside(1, 7, 6, join_3, add_2, X);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(13, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(13, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -7116,16 +7012,16 @@ size_t stewart_sps_M_batch(const stewart_sps_model *model, size_t n, const stewa
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_lanes(model, X + 13*i, M + 144*i, codes);
+        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_M(model, X + 13*(i + k), M + 144*(i + k));
+                codes[k] = stewart_sps_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_M(model, X + 13*i, M + 144*i);
+        const int code = stewart_sps_M(model, X + NQ*i, M + NV*NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7145,16 +7041,16 @@ size_t stewart_sps_Z_batch(const stewart_sps_model *model, size_t n, const stewa
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_lanes(model, X + 13*i, V + 12*i, Z + 12*i, codes);
+        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_Z(model, X + 13*(i + k), V + 12*(i + k), Z + 12*(i + k));
+                codes[k] = stewart_sps_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_Z(model, X + 13*i, V + 12*i, Z + 12*i);
+        const int code = stewart_sps_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7173,16 +7069,16 @@ size_t stewart_sps_H_batch(const stewart_sps_model *model, size_t n, const stewa
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_lanes(model, X + 13*i, H + 72*i, codes);
+        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_H(model, X + 13*(i + k), H + 72*(i + k));
+                codes[k] = stewart_sps_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_H(model, X + 13*i, H + 72*i);
+        const int code = stewart_sps_H(model, X + NQ*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7202,16 +7098,16 @@ size_t stewart_sps_inverse_kinematics_batch(const stewart_sps_model *model, size
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_lanes(model, X + 13*i, q + 24*i, codes);
+        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_inverse_kinematics(model, X + 13*(i + k), q + 24*(i + k));
+                codes[k] = stewart_sps_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_inverse_kinematics(model, X + 13*i, q + 24*i);
+        const int code = stewart_sps_inverse_kinematics(model, X + NQ*i, q + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7231,16 +7127,16 @@ size_t stewart_sps_joint_rates_batch(const stewart_sps_model *model, size_t n, c
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_lanes(model, X + 13*i, V + 12*i, rates + 24*i, codes);
+        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_joint_rates(model, X + 13*(i + k), V + 12*(i + k), rates + 24*(i + k));
+                codes[k] = stewart_sps_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_joint_rates(model, X + 13*i, V + 12*i, rates + 24*i);
+        const int code = stewart_sps_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7261,18 +7157,18 @@ size_t stewart_sps_joint_accelerations_batch(const stewart_sps_model *model, siz
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_lanes(model, X + 13*i, V + 12*i, A + 12*i, accelerations + 24*i, codes);
+        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_joint_accelerations(model, X + 13*(i + k), V + 12*(i + k), A + 12*(i + k),
-                    accelerations + 24*(i + k));
+                codes[k] = stewart_sps_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    accelerations + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_joint_accelerations(model, X + 13*i, V + 12*i, A + 12*i,
-            accelerations + 24*i);
+        const int code = stewart_sps_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7293,17 +7189,18 @@ size_t stewart_sps_dynamics_batch(const stewart_sps_model *model, size_t n, cons
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_lanes(model, X + 13*i, V + 12*i, M + 144*i, Z + 12*i, H + 72*i, codes);
+        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_dynamics(model, X + 13*(i + k), V + 12*(i + k), M + 144*(i + k), Z + 12*(i
-                    + k), H + 72*(i + k));
+                codes[k] = stewart_sps_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
+                    NV*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_dynamics(model, X + 13*i, V + 12*i, M + 144*i, Z + 12*i, H + 72*i);
+        const int code = stewart_sps_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
+            NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7325,19 +7222,19 @@ size_t stewart_sps_inverse_dynamics_batch(const stewart_sps_model *model, size_t
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_lanes(model, X + 13*i, V + 12*i, A + 12*i, wrench ? wrench + 6*i : NULL, tau +
-            6*i, codes);
+        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+            NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_inverse_dynamics(model, X + 13*(i + k), V + 12*(i + k), A + 12*(i + k),
-                    wrench ? wrench + 6*(i + k) : NULL, tau + 6*(i + k));
+                codes[k] = stewart_sps_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_inverse_dynamics(model, X + 13*i, V + 12*i, A + 12*i, wrench ? wrench
-            + 6*i : NULL, tau + 6*i);
+        const int code = stewart_sps_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
+            + NW*i : NULL, tau + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7359,19 +7256,19 @@ size_t stewart_sps_forward_dynamics_batch(const stewart_sps_model *model, size_t
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_lanes(model, X + 13*i, V + 12*i, tau + 6*i, wrench ? wrench + 6*i : NULL, A +
-            12*i, codes);
+        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+            NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_forward_dynamics(model, X + 13*(i + k), V + 12*(i + k), tau + 6*(i + k),
-                    wrench ? wrench + 6*(i + k) : NULL, A + 12*(i + k));
+                codes[k] = stewart_sps_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
+                    wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_forward_dynamics(model, X + 13*i, V + 12*i, tau + 6*i, wrench ?
-            wrench + 6*i : NULL, A + 12*i);
+        const int code = stewart_sps_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
+            wrench + NW*i : NULL, A + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7393,19 +7290,19 @@ size_t stewart_sps_complete_acceleration_batch(const stewart_sps_model *model, s
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        complete_acceleration_lanes(model, X + 13*i, V + 12*i, A + 12*i, wrench ? wrench + 6*i : NULL,
-            completed + 12*i, codes);
+        complete_acceleration_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL,
+            completed + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_complete_acceleration(model, X + 13*(i + k), V + 12*(i + k), A + 12*(i +
-                    k), wrench ? wrench + 6*(i + k) : NULL, completed + 12*(i + k));
+                codes[k] = stewart_sps_complete_acceleration(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
+                    k), wrench ? wrench + NW*(i + k) : NULL, completed + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_complete_acceleration(model, X + 13*i, V + 12*i, A + 12*i, wrench ?
-            wrench + 6*i : NULL, completed + 12*i);
+        const int code = stewart_sps_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
+            wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7426,8 +7323,8 @@ size_t stewart_sps_leg_reactions_batch(const stewart_sps_model *model, size_t n,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_leg_reactions(model, X + 13*i, V + 12*i, A + 12*i, wrench ? wrench +
-            6*i : NULL, forces + 18*i);
+        const int code = stewart_sps_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
+            NW*i : NULL, forces + 18*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7447,7 +7344,7 @@ size_t stewart_sps_energy_batch(const stewart_sps_model *model, size_t n, const 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_energy(model, X + 13*i, V + 12*i, kinetic + 1*i, potential + 1*i);
+        const int code = stewart_sps_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7466,7 +7363,7 @@ size_t stewart_sps_condition_batch(const stewart_sps_model *model, size_t n, con
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_condition(model, X + 13*i, sigma + 6*i, legs + 6*i);
+        const int code = stewart_sps_condition(model, X + NQ*i, sigma + 6*i, legs + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7485,7 +7382,7 @@ size_t stewart_sps_forward_kinematics_batch(const stewart_sps_model *model, size
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_forward_kinematics(model, q_actuated + 6*i, X0 + 13*i, X + 13*i);
+        const int code = stewart_sps_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7506,7 +7403,7 @@ size_t stewart_sps_dissipation_batch(const stewart_sps_model *model, size_t n, c
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_dissipation(model, X + 13*i, V + 12*i, dissipation + 1*i);
+        const int code = stewart_sps_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7526,16 +7423,16 @@ size_t stewart_sps_momentum_batch(const stewart_sps_model *model, size_t n, cons
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_lanes(model, X + 13*i, V + 12*i, momentum + 12*i, codes);
+        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_momentum(model, X + 13*(i + k), V + 12*(i + k), momentum + 12*(i + k));
+                codes[k] = stewart_sps_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_momentum(model, X + 13*i, V + 12*i, momentum + 12*i);
+        const int code = stewart_sps_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7555,16 +7452,16 @@ size_t stewart_sps_joint_margins_batch(const stewart_sps_model *model, size_t n,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_margins_lanes(model, X + 13*i, margins + 24*i, codes);
+        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_joint_margins(model, X + 13*(i + k), margins + 24*(i + k));
+                codes[k] = stewart_sps_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_joint_margins(model, X + 13*i, margins + 24*i);
+        const int code = stewart_sps_joint_margins(model, X + NQ*i, margins + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7584,16 +7481,16 @@ size_t stewart_sps_within_limits_batch(const stewart_sps_model *model, size_t n,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        within_limits_lanes(model, X + 13*i, within + 1*i, codes);
+        within_limits_lanes(model, X + NQ*i, within + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_within_limits(model, X + 13*(i + k), within + 1*(i + k));
+                codes[k] = stewart_sps_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_within_limits(model, X + 13*i, within + 1*i);
+        const int code = stewart_sps_within_limits(model, X + NQ*i, within + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7613,16 +7510,16 @@ size_t stewart_sps_actuator_positions_batch(const stewart_sps_model *model, size
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_lanes(model, X + 13*i, q + 6*i, codes);
+        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_actuator_positions(model, X + 13*(i + k), q + 6*(i + k));
+                codes[k] = stewart_sps_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_actuator_positions(model, X + 13*i, q + 6*i);
+        const int code = stewart_sps_actuator_positions(model, X + NQ*i, q + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7642,16 +7539,16 @@ size_t stewart_sps_actuator_rates_batch(const stewart_sps_model *model, size_t n
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_lanes(model, X + 13*i, V + 12*i, rates + 6*i, codes);
+        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_actuator_rates(model, X + 13*(i + k), V + 12*(i + k), rates + 6*(i + k));
+                codes[k] = stewart_sps_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_actuator_rates(model, X + 13*i, V + 12*i, rates + 6*i);
+        const int code = stewart_sps_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7672,18 +7569,18 @@ size_t stewart_sps_actuator_accelerations_batch(const stewart_sps_model *model, 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_lanes(model, X + 13*i, V + 12*i, A + 12*i, accelerations + 6*i, codes);
+        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_actuator_accelerations(model, X + 13*(i + k), V + 12*(i + k), A + 12*(i +
-                    k), accelerations + 6*(i + k));
+                codes[k] = stewart_sps_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
+                    k), accelerations + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_actuator_accelerations(model, X + 13*i, V + 12*i, A + 12*i,
-            accelerations + 6*i);
+        const int code = stewart_sps_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7704,17 +7601,17 @@ size_t stewart_sps_power_batch(const stewart_sps_model *model, size_t n, const s
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_lanes(model, X + 13*i, V + 12*i, tau + 6*i, power + 1*i, codes);
+        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = stewart_sps_power(model, X + 13*(i + k), V + 12*(i + k), tau + 6*(i + k), power + 1*(i
-                    + k));
+                codes[k] = stewart_sps_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
+                    k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = stewart_sps_power(model, X + 13*i, V + 12*i, tau + 6*i, power + 1*i);
+        const int code = stewart_sps_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7732,7 +7629,7 @@ size_t stewart_sps_rotation_batch(size_t n, const stewart_sps_real *X, stewart_s
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_rotation(X + 13*i, R + 9*i);
+        const int code = stewart_sps_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7750,7 +7647,7 @@ size_t stewart_sps_pose_batch(size_t n, const stewart_sps_real *t, const stewart
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_pose(t + 3*i, R + 9*i, X + 13*i);
+        const int code = stewart_sps_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7769,7 +7666,7 @@ size_t stewart_sps_X_dot_batch(size_t n, const stewart_sps_real *X, const stewar
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_X_dot(X + 13*i, V + 12*i, X_dot + 13*i);
+        const int code = stewart_sps_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7788,7 +7685,7 @@ size_t stewart_sps_pose_from_rpy_batch(size_t n, const stewart_sps_real *t, cons
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_pose_from_rpy(t + 3*i, rpy + 3*i, X + 13*i);
+        const int code = stewart_sps_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7807,7 +7704,7 @@ size_t stewart_sps_retract_batch(size_t n, const stewart_sps_real *X, const stew
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_retract(X + 13*i, step + 12*i, X_moved + 13*i);
+        const int code = stewart_sps_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7826,7 +7723,7 @@ size_t stewart_sps_difference_batch(size_t n, const stewart_sps_real *X0, const 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_difference(X0 + 13*i, X1 + 13*i, step + 12*i);
+        const int code = stewart_sps_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7845,7 +7742,7 @@ size_t stewart_sps_interpolate_batch(size_t n, const stewart_sps_real *X0, const
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = stewart_sps_interpolate(X0 + 13*i, X1 + 13*i, s + 1*i, X + 13*i);
+        const int code = stewart_sps_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -91,7 +91,7 @@ _SHAPES = {  # of the arrays that functions give
     "qd": (24,),
     "qdd": (24,),
     "leg_force": (6, 3),
-    "drive": (6, 3),
+    "actuator": (6, 3),
     "potential": (1,),
     "lengths": (2,),
     "pivots": (6,),
@@ -150,7 +150,7 @@ _leg_force_sps = (
     [1, 4, 7, 10, 13, 16],
     [2, 5, 8, 11, 14, 17],
 )
-_drive_sps = (
+_actuator_sps = (
     [0, 3, 6, 9, 12, 15],
     [1, 4, 7, 10, 13, 16],
     [2, 5, 8, 11, 14, 17],
@@ -870,50 +870,41 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
+_BLOCK = 4096  # states
 _SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
-    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    """Prepared values of a function, and for each loop over legs (leg, its values): floats."""
     if name not in p._cache:
         shared, loops = p._prepared()[name]
-        rows, columns = [], []
+        rows = []
         for count, values in loops:
-            table = [np.broadcast_to(v, count) for v in values]
-            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
-            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
-        p._cache[name] = tuple(map(float, shared)), rows, columns
+            table = [np.broadcast_to(v, count).tolist() for v in values]
+            rows.append([(leg, tuple(v[leg] for v in table)) for leg in range(count)])
+        p._cache[name] = tuple(map(float, shared)), rows
     return p._cache[name]
-
-
-def _sqrt(x):
-    return x**0.5 if x >= 0.0 else np.nan
 
 
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
-    sqrt = staticmethod(_sqrt)
+    sqrt = staticmethod(math.sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda leg, good: good)
 
-    def __init__(self, p, states):
+    def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)[:2]
+        return _constants(self.p, name)
 
     def zeros(self, name):
         return [0.0] * math.prod(_SHAPES[name])
-
-    def added(self, sums, leg, terms):
-        """Sums over the legs so far."""
-        return [a + b for a, b in zip(sums, terms)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -925,7 +916,7 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, ValueError):
             ok = False
         if ok and all(all(map(math.isfinite, array)) for array in arrays):
             return arrays
@@ -933,54 +924,66 @@ class _Floats:
 
 
 class _Arrays:
-    """Functions of many states at once: arrays (states,), and (legs, states)."""
+    """Functions of many states at once, in arrays (states,).
+
+    Attributes:
+        kept: replays, by their place among those of a block, for other blocks of the same size;
+            None where there are too few states for it to pay to record.
+    """
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
-    def __init__(self, p, states):
-        self.p, self.states = p, states
+    def __init__(self, p, states, kept=None):
+        self.p, self.states, self.kept, self.done = p, states, kept, 0
 
     def constants(self, name):
-        """Shared values, and (all legs, their values) once for each loop."""
-        shared, _, columns = _constants(self.p, name)
-        return shared, columns
+        """Shared values, and (leg, its values) for every leg of each loop.
+
+        As arrays without dimensions: beside arrays they are faster than floats.
+        """
+        if (name, "arrays") not in self.p._cache:
+            shared, loops = _constants(self.p, name)
+            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
+            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
+        return self.p._cache[name, "arrays"]
 
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, legs, good):
-        """Whether it holds for all legs."""
-        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
-
-    def added(self, sums, legs, terms):
-        """Sums over the legs, all at once."""
-        shape = (legs.stop, self.states)
-        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+    def computed(self, function, names, vectors):
+        """Flags and arrays (*shape, states) of a function."""
+        if self.kept is None:
+            flags, arrays = function(self, *vectors)
+        else:
+            if self.done not in self.kept:
+                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+            flags, arrays = self.kept[self.done].run(vectors)
+            self.done += 1
+        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = function(self, *vectors)
-        for a in arrays:
-            ok = ok & np.isfinite(a).all(axis=0)
+        ok, arrays = self.computed(function, names, vectors)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
-                a[:, ~ok] = np.nan
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+                a[..., ~ok] = np.nan
+        return arrays
 
 
 class _Judged(_Arrays):
     """The same, and why a state is impossible."""
 
-    def __init__(self, p, states):
-        super().__init__(p, states)
+    def __init__(self, p, states, kept=None):
+        super().__init__(p, states, kept)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = function(self, *vectors)
+        (valid, reached, clear), arrays = self.computed(function, names, vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            self.failed[code] |= np.logical_not(good)
+        return arrays
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -992,9 +995,9 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _mode(p, states):
+def _mode(p, states, kept=None):
     """The faster way for so many states."""
-    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
@@ -1027,26 +1030,27 @@ def _one(steps, p, given, shapes, read, unbounded):
 
 
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
-    """Results at many states, block by block."""
+    """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
+    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
-    if count > _BLOCK:
+    if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
         # of intermediate arrays from block to block instead of giving its pages back.
         np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
-        for first in range(0, max(count, 1), _BLOCK):
-            block = slice(first, min(first + _BLOCK, count))
+        for stop in (*range(size, count, max(size, 1)), count):
+            block = slice(stop - size, stop)
             states = [_states_last(v[block]) for v in flat]
-            m, good = mode(p, block.stop - first), possible[block]
+            m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
-            _all_finite(compress(states, read), good)
+            good &= _finite(compress(states, read), size)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
+            good &= _finite([np.minimum(a, 0.0) for a in found] if unbounded else found, size)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1063,10 +1067,194 @@ def _states_last(a):
     return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
 
 
-def _all_finite(arrays, good):
-    """Clear the flags of states in which some entry is not finite."""
-    for a in arrays:
-        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+def _finite(arrays, states):
+    """In which states all entries of arrays (*shape, states) are finite."""
+    flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
+    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    if not np.all(good):  # or the sum is too large
+        good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
+    return good
+
+
+def _least(x, y, out):
+    return np.minimum(x, y, out=out)
+
+
+def _both(operation):
+    """An operation of recorded values, and the same with its operands the other way round."""
+    return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
+
+
+class _Recorded:
+    """A value of a function that runs to be recorded."""
+
+    def __init__(self, record, number):
+        self.record, self.number = record, number
+
+    __add__, __radd__ = _both(np.add)
+    __sub__, __rsub__ = _both(np.subtract)
+    __mul__, __rmul__ = _both(np.multiply)
+    __truediv__, __rtruediv__ = _both(np.divide)
+    __and__, __rand__ = _both(np.logical_and)
+    __gt__, __lt__ = _both(np.greater)
+    __ge__, __le__ = _both(np.greater_equal)
+
+    def __neg__(self):
+        return self.record.made(np.negative, self)
+
+    def __abs__(self):
+        return self.record.made(np.absolute, self)
+
+
+class _Record:
+    """The operations of a function, recorded by running it, and where their results stand.
+
+    Results share arrays: what is read for the last time makes room for the next, so that a few
+    arrays do, which stay in the processor's cache.
+
+    Attributes:
+        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
+        steps: (operation, numbers of its operands and of its result).
+        slots: number of a result -> (kind of array or "out", place).
+        counts: how many arrays there are of every kind.
+    """
+
+    def __init__(self, p, function, sizes):
+        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
+        self.constant, self.literals = [], {}
+        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
+        flags, arrays = function(self, *self.inputs)
+        self.is_judged = isinstance(flags, tuple)
+        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes = [len(array) for array in arrays]
+        for place, value in enumerate(v for array in arrays for v in array):
+            self.store(self.number(value), place)
+        self.counts = self.share()
+
+    # ---- the mode in which the function runs ----
+
+    def sqrt(self, x):
+        return self.made(np.sqrt, x)
+
+    def sin(self, x):
+        return self.made(np.sin, x)
+
+    def cos(self, x):
+        return self.made(np.cos, x)
+
+    def atan2(self, y, x):
+        return self.made(np.arctan2, y, x)
+
+    def least(self, x, y):
+        return self.made(_least, x, y)
+
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        self.name, (shared, loops) = name, _constants(self.p, name)
+        shared = self.named(shared)
+        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+
+    # ---- what is recorded ----
+
+    def named(self, values):
+        """Values for constants."""
+        found = [self.value("one") for _ in values]
+        self.constant += [v.number for v in found]
+        return found
+
+    def value(self, kind):
+        self.kinds.append(kind)
+        return _Recorded(self, len(self.kinds) - 1)
+
+    def number(self, value):
+        """Number of a value, which may be a literal."""
+        if isinstance(value, _Recorded):
+            return value.number
+        if value not in self.literals:
+            self.literals[value] = self.value("one").number
+        return self.literals[value]
+
+    def made(self, operation, *operands):
+        """The result of an operation."""
+        numbers = [self.number(operand) for operand in operands]
+        if all(self.kinds[n] == "one" for n in numbers):
+            kind = "one"
+        else:
+            kind = "flag" if operation in _OF_FLAGS else "state"
+        result = self.value(kind)
+        self.steps.append((operation, [*numbers, result.number]))
+        return result
+
+    def store(self, number, place):
+        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
+        if self.kinds[number] != "state" or number in self.slots:
+            copy = self.value("state").number
+            self.steps.append((np.positive, [number, copy]))
+            number = copy
+        self.slots[number] = "out", place
+
+    def share(self):
+        """Give results their places; how many there are of each kind."""
+        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
+        last.update(dict.fromkeys(self.flags, len(self.steps)))
+        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
+        for k, (_, (*operands, result)) in enumerate(self.steps):
+            for n in dict.fromkeys(operands):
+                kind, place = self.slots.get(n, ("given", 0))
+                if last[n] == k and kind in free:
+                    free[kind].append(place)
+            if result not in self.slots:
+                kind = self.kinds[result]
+                if not free[kind]:
+                    free[kind].append(counts[kind])
+                    counts[kind] += 1
+                self.slots[result] = kind, free[kind].pop()
+        return counts
+
+
+_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_RECORDS = {}  # by function
+
+
+class _Replay:
+    """A record on arrays of so many states, which are made once."""
+
+    def __init__(self, p, function, sizes, states):
+        if function not in _RECORDS:
+            _RECORDS[function] = _Record(p, function, sizes)
+        r = _RECORDS[function]
+        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
+        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
+        made["out"] = _rows(sum(r.sizes), states)
+        self.inputs = [_rows(size, states) for size in sizes]
+        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        at = {number: np.array(value) for value, number in r.literals.items()}
+        for values, given in zip(r.inputs, self.inputs):
+            at |= {v.number: row for v, row in zip(values, given)}
+        if r.name is not None:
+            shared, loops = _constants(p, r.name)
+            values = sum((k for legs in loops for _, k in legs), shared)
+            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
+        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
+        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
+        flags = [at[n] for n in r.flags]
+        self.flags = flags if r.is_judged else flags[0]
+
+    def run(self, vectors):
+        """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
+        for rows, vector in zip(self.inputs, vectors):
+            rows[:] = vector
+        for operation, operands in self.steps:
+            operation(*operands)
+        return self.flags, self.arrays
+
+
+def _rows(count, states, kind=float):
+    """Rows of so many states, a cache line apart from each other."""
+    return np.empty((count, states + 8), dtype=kind)[:, :states]
 
 
 def _extended(a, size):
@@ -1497,7 +1685,12 @@ def _run_dynamics(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 27
+    (
+    M_tt_sps_xx, M_tt_xy, M_tt_xz, M_tt_sps_yy, M_tt_yz, M_tt_sps_zz, M_ta_xx, M_ta_sps_xy,
+        M_ta_sps_xz, M_ta_sps_yx, M_ta_t, M_ta_sps_yz, M_ta_sps_zx, M_ta_sps_zy, M_ta_zz,
+        M_aa_sps_xx, M_aa_sps_xy, M_aa_sps_xz, M_aa_sps_yy, M_aa_sps_yz, M_aa_sps_zz, Z_t_sps_x,
+        Z_t_sps_y, Z_t_sps_z, Z_a_sps_x, Z_a_sps_y, Z_a_sps_z,
+    ) = [0.0] * 27
     for leg, k in legs[0]:
         (
         sps_J_group_3_in_axes3_xx, sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz,
@@ -1804,7 +1997,7 @@ def _run_dynamics(m, X, V):
         sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x + sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y +
             sps_mu_3_o_in_axes3_z*sps_s_2
         )
-        # (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         sps_d_G_in_axes3_xz = (
         sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_x + sps_d_Gamma_2_in_axes3_z*sps_w_2_in_axes3_x
         )
@@ -1889,7 +2082,7 @@ def _run_dynamics(m, X, V):
         sps_phi_4_o_in_axes3_z*sps_w_4_z - axis_x_sps_axes3_z*sps_c_o_in_axes3_x -
             axis_y_sps_axes3_z*sps_c_o_in_axes3_y
         )
-        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
         sps_d_P_3_x = (
         axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy
         )
@@ -1932,20 +2125,45 @@ def _run_dynamics(m, X, V):
         sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z
         sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x
         ok = (
-        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
-            _TOLERANCE * 0.6400000000000001))
+        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
+            0.6400000000000001)
         )
-        sums = m.added(sums, leg, (
-        sps_Q_xx, sps_Q_xy, sps_Q_xz, sps_Q_yy, sps_Q_yz, sps_Q_zz, sps_M_ta_t_3,
-            sps_M_ta_t_4, sps_M_ta_t_5, sps_M_ta_t_6, sps_M_ta_t_8, sps_M_ta_t_9,
-            sps_M_ta_t_10, sps_M_ta_t_11, sps_M_ta_t_12, sps_M_aa_t, sps_M_aa_t_2,
-            sps_M_aa_t_3, sps_M_aa_t_4, sps_M_aa_t_5, sps_M_aa_t_6, sps_U_x, sps_U_y, sps_U_z,
-            sps_Z_a_t, sps_Z_a_t_2, sps_Z_a_t_3,
-        ))
-        # (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        # (M_tt) translational block of M
+        M_tt_sps_xx += sps_Q_xx
+        M_tt_xy += sps_Q_xy
+        M_tt_xz += sps_Q_xz
+        M_tt_sps_yy += sps_Q_yy
+        M_tt_yz += sps_Q_yz
+        M_tt_sps_zz += sps_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += sps_M_ta_t_3
+        M_ta_sps_xy += sps_M_ta_t_4
+        M_ta_sps_xz += sps_M_ta_t_5
+        M_ta_sps_yx += sps_M_ta_t_6
+        M_ta_t += sps_M_ta_t_8
+        M_ta_sps_yz += sps_M_ta_t_9
+        M_ta_sps_zx += sps_M_ta_t_10
+        M_ta_sps_zy += sps_M_ta_t_11
+        M_ta_zz += sps_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_sps_xx += sps_M_aa_t
+        M_aa_sps_xy += sps_M_aa_t_2
+        M_aa_sps_xz += sps_M_aa_t_3
+        M_aa_sps_yy += sps_M_aa_t_4
+        M_aa_sps_yz += sps_M_aa_t_5
+        M_aa_sps_zz += sps_M_aa_t_6
+        # (Z_t) translational part of Z
+        Z_t_sps_x += sps_U_x
+        Z_t_sps_y += sps_U_y
+        Z_t_sps_z += sps_U_z
+        # (Z_a) rotational part of Z
+        Z_a_sps_x += sps_Z_a_t
+        Z_a_sps_y += sps_Z_a_t_2
+        Z_a_sps_z += sps_Z_a_t_3
+        # (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
         out_Z[_Z_sps[0][leg]] = sps_mu_3_o_in_axes3_z
-        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
         out_M[_M_sps[0][leg]] = sps_d_P_3_x
         out_M[_M_sps[1][leg]] = sps_d_P_3_x
         out_M[_M_sps[2][leg]] = sps_d_P_3_y
@@ -1959,7 +2177,7 @@ def _run_dynamics(m, X, V):
         out_M[_M_sps[9][leg]] = sps_M_ya_3_y
         out_M[_M_sps[10][leg]] = sps_M_ya_3_z
         out_M[_M_sps[11][leg]] = sps_M_ya_3_z
-        # (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        # (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
         out_M[_M_sps[12][leg]] = sps_J_group_3_in_axes3_zz
         # (sps-w_4) reciprocal vector 3
         out_H[_H_sps[0][leg]] = sps_w_4_x
@@ -1969,12 +2187,6 @@ def _run_dynamics(m, X, V):
         out_H[_H_sps[3][leg]] = sps_H_a_4_x
         out_H[_H_sps[4][leg]] = sps_H_a_4_y
         out_H[_H_sps[5][leg]] = sps_H_a_4_z
-    (
-    M_tt_sps_xx, M_tt_xy, M_tt_xz, M_tt_sps_yy, M_tt_yz, M_tt_sps_zz, M_ta_xx, M_ta_sps_xy,
-        M_ta_sps_xz, M_ta_sps_yx, M_ta_t, M_ta_sps_yz, M_ta_sps_zx, M_ta_sps_zy, M_ta_zz,
-        M_aa_sps_xx, M_aa_sps_xy, M_aa_sps_xz, M_aa_sps_yy, M_aa_sps_yz, M_aa_sps_zz, Z_t_sps_x,
-        Z_t_sps_y, Z_t_sps_z, Z_a_sps_x, Z_a_sps_y, Z_a_sps_z,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_sps_xx + m_star
     M_tt_yy = M_tt_sps_yy + m_star
@@ -2119,7 +2331,11 @@ def _run_M(m, X):
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
-    sums = [0.0] * 21
+    (
+    M_tt_sps_xx, M_tt_xy, M_tt_xz, M_tt_sps_yy, M_tt_yz, M_tt_sps_zz, M_ta_xx, M_ta_sps_xy,
+        M_ta_sps_xz, M_ta_sps_yx, M_ta_t, M_ta_sps_yz, M_ta_sps_zx, M_ta_sps_zy, M_ta_zz,
+        M_aa_sps_xx, M_aa_sps_xy, M_aa_sps_xz, M_aa_sps_yy, M_aa_sps_yz, M_aa_sps_zz,
+    ) = [0.0] * 21
     for leg, k in legs[0]:
         (
         sps_J_group_3_in_axes3_xx, sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz,
@@ -2252,7 +2468,7 @@ def _run_M(m, X):
         sps_d_Gamma_1_in_axes3_z = (
         sps_e_1_in_axes3_x*sps_h_4_in_spec3_z - sps_e_1_in_axes3_y*sps_h_4_in_spec3_y
         )
-        # (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         sps_d_G_in_axes3_xz = (
         sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_x + sps_d_Gamma_2_in_axes3_z*sps_w_2_in_axes3_x
         )
@@ -2331,7 +2547,7 @@ def _run_M(m, X):
         )
         sps_Q_t_14 = axis_x_sps_axes3_z*sps_Q_t_8 + axis_y_sps_axes3_z*sps_Q_t_11
         sps_Q_zz = -2.0*sps_Q_t_14
-        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
         sps_d_P_3_x = (
         axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy
         )
@@ -2366,17 +2582,35 @@ def _run_M(m, X):
         sps_M_ya_3_y = sps_d_P_3_x*sps_q_z - sps_d_P_3_z*sps_q_x
         sps_M_ya_3_z = sps_d_P_3_y*sps_q_x - sps_d_P_3_x*sps_q_y
         ok = (
-        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
-            _TOLERANCE * 0.6400000000000001))
+        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
+            0.6400000000000001)
         )
-        sums = m.added(sums, leg, (
-        sps_Q_xx, sps_Q_xy, sps_Q_xz, sps_Q_yy, sps_Q_yz, sps_Q_zz, sps_M_ta_t_3,
-            sps_M_ta_t_4, sps_M_ta_t_5, sps_M_ta_t_6, sps_M_ta_t_8, sps_M_ta_t_9,
-            sps_M_ta_t_10, sps_M_ta_t_11, sps_M_ta_t_12, sps_M_aa_t, sps_M_aa_t_2,
-            sps_M_aa_t_3, sps_M_aa_t_4, sps_M_aa_t_5, sps_M_aa_t_6,
-        ))
-        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        # (M_tt) translational block of M
+        M_tt_sps_xx += sps_Q_xx
+        M_tt_xy += sps_Q_xy
+        M_tt_xz += sps_Q_xz
+        M_tt_sps_yy += sps_Q_yy
+        M_tt_yz += sps_Q_yz
+        M_tt_sps_zz += sps_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += sps_M_ta_t_3
+        M_ta_sps_xy += sps_M_ta_t_4
+        M_ta_sps_xz += sps_M_ta_t_5
+        M_ta_sps_yx += sps_M_ta_t_6
+        M_ta_t += sps_M_ta_t_8
+        M_ta_sps_yz += sps_M_ta_t_9
+        M_ta_sps_zx += sps_M_ta_t_10
+        M_ta_sps_zy += sps_M_ta_t_11
+        M_ta_zz += sps_M_ta_t_12
+        # (M_aa) rotational block of M
+        M_aa_sps_xx += sps_M_aa_t
+        M_aa_sps_xy += sps_M_aa_t_2
+        M_aa_sps_xz += sps_M_aa_t_3
+        M_aa_sps_yy += sps_M_aa_t_4
+        M_aa_sps_yz += sps_M_aa_t_5
+        M_aa_sps_zz += sps_M_aa_t_6
+        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
         out_M[_M_sps[0][leg]] = sps_d_P_3_x
         out_M[_M_sps[1][leg]] = sps_d_P_3_x
         out_M[_M_sps[2][leg]] = sps_d_P_3_y
@@ -2390,13 +2624,8 @@ def _run_M(m, X):
         out_M[_M_sps[9][leg]] = sps_M_ya_3_y
         out_M[_M_sps[10][leg]] = sps_M_ya_3_z
         out_M[_M_sps[11][leg]] = sps_M_ya_3_z
-        # (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        # (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
         out_M[_M_sps[12][leg]] = sps_J_group_3_in_axes3_zz
-    (
-    M_tt_sps_xx, M_tt_xy, M_tt_xz, M_tt_sps_yy, M_tt_yz, M_tt_sps_zz, M_ta_xx, M_ta_sps_xy,
-        M_ta_sps_xz, M_ta_sps_yx, M_ta_t, M_ta_sps_yz, M_ta_sps_zx, M_ta_sps_zy, M_ta_zz,
-        M_aa_sps_xx, M_aa_sps_xy, M_aa_sps_xz, M_aa_sps_yy, M_aa_sps_yz, M_aa_sps_zz,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_sps_xx + m_star
     M_tt_yy = M_tt_sps_yy + m_star
@@ -2563,7 +2792,7 @@ def _run_Z(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 6
+    Z_t_sps_x, Z_t_sps_y, Z_t_sps_z, Z_a_sps_x, Z_a_sps_y, Z_a_sps_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
@@ -2839,16 +3068,20 @@ def _run_Z(m, X, V):
         sps_Z_a_t_2 = sps_U_x*sps_q_z - sps_U_z*sps_q_x
         sps_Z_a_t_3 = sps_U_y*sps_q_x - sps_U_x*sps_q_y
         ok = (
-        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
-            _TOLERANCE * 0.6400000000000001))
+        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
+            0.6400000000000001)
         )
-        sums = m.added(sums, leg, (
-        sps_U_x, sps_U_y, sps_U_z, sps_Z_a_t, sps_Z_a_t_2, sps_Z_a_t_3,
-        ))
-        # (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        # (Z_t) translational part of Z
+        Z_t_sps_x += sps_U_x
+        Z_t_sps_y += sps_U_y
+        Z_t_sps_z += sps_U_z
+        # (Z_a) rotational part of Z
+        Z_a_sps_x += sps_Z_a_t
+        Z_a_sps_y += sps_Z_a_t_2
+        Z_a_sps_z += sps_Z_a_t_3
+        # (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
         out_Z[_Z_sps[0][leg]] = sps_mu_3_o_in_axes3_z
-    Z_t_sps_x, Z_t_sps_y, Z_t_sps_z, Z_a_sps_x, Z_a_sps_y, Z_a_sps_z = sums
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_sps_x
     Z_t_y = Z_p_y + Z_t_sps_y
@@ -2957,8 +3190,8 @@ def _run_H(m, X):
         sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z
         sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x
         ok = (
-        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (sps-w_4) reciprocal vector 3
         out_H[_H_sps[0][leg]] = sps_w_4_x
@@ -3117,7 +3350,7 @@ def _run_required(m, X, V, A):
     mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
     mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
     mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
-    sums = [0.0] * 6
+    R_t_t, R_t_t_2, R_t_t_3, R_a_sps_x, R_a_sps_y, R_a_sps_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
@@ -3403,14 +3636,19 @@ def _run_required(m, X, V, A):
         sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z
         sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x
         ok = (
-        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
-            _TOLERANCE * 0.6400000000000001))
+        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
+            0.6400000000000001)
         )
-        sums = m.added(sums, leg, (
-        sps_c_x, sps_c_y, sps_c_z, sps_R_a_t, sps_R_a_t_2, sps_R_a_t_3,
-        ))
-        # (sps-P_3) inertia and weight of the leg along the extra freedom of joint 3
+        # (R_t) force that actuators and external wrench must give
+        R_t_t += sps_c_x
+        R_t_t_2 += sps_c_y
+        R_t_t_3 += sps_c_z
+        # (R_a) moment that actuators and external wrench must give
+        R_a_sps_x += sps_R_a_t
+        R_a_sps_y += sps_R_a_t_2
+        R_a_sps_z += sps_R_a_t_3
+        # (sps-P_3) inertia and weight of the leg along the extra degree of freedom of joint 3
         out_required[_required_sps[0][leg]] = sps_mu_3_in_axes3_z
         # (sps-w_4) reciprocal vector 3
         out_H[_H_sps[0][leg]] = sps_w_4_x
@@ -3420,7 +3658,6 @@ def _run_required(m, X, V, A):
         out_H[_H_sps[3][leg]] = sps_H_a_4_x
         out_H[_H_sps[4][leg]] = sps_H_a_4_y
         out_H[_H_sps[5][leg]] = sps_H_a_4_z
-    R_t_t, R_t_t_2, R_t_t_3, R_a_sps_x, R_a_sps_y, R_a_sps_z = sums
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t
     R_t_y = f_p_y - R_t_t_2
@@ -3530,8 +3767,8 @@ def _run_inverse_kinematics(m, X):
         inv_sps_root_2 = 1.0/sps_root_2
         sps_q_2 = atan2(-inv_sps_root_2*sps_xi_1_in_axes1_z, inv_sps_root_2*sps_root_1)
         ok = (
-        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (sps-q_1) displacement of joint 1
         out_q[_q_sps[0][leg]] = sps_q_1
@@ -3711,9 +3948,9 @@ def _run_joint_rates(m, X, V):
             sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         ok = (
-        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
-            _TOLERANCE * 0.6400000000000001))
+        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
+            0.6400000000000001)
         )
         # (sps-qd_1) rate of joint 1
         out_qd[_qd_sps[0][leg]] = sps_qd_1
@@ -3968,9 +4205,9 @@ def _run_joint_accelerations(m, X, V, A):
             sps_rel_in_axes3_x*sps_v_1_in_axes3_y)
         )
         ok = (
-        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
-            _TOLERANCE * 0.6400000000000001))
+        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
+            0.6400000000000001)
         )
         # (sps-qdd_1) acceleration of joint 1
         out_qdd[_qdd_sps[0][leg]] = sps_qdd_1
@@ -4053,7 +4290,7 @@ def _run_legs(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
-    out_drive = m.zeros("drive")
+    out_actuator = m.zeros("actuator")
     for leg, k in legs[0]:
         (
         sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
@@ -4333,19 +4570,19 @@ def _run_legs(m, X, V, A):
             sps_c_true_in_axes3_z*sps_w_4_z
         )
         ok = (
-        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
-            _TOLERANCE * 0.6400000000000001))
+        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
+            0.6400000000000001)
         )
         # (sps-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_sps[0][leg]] = sps_c_true_x
         out_leg_force[_leg_force_sps[1][leg]] = sps_c_true_y
         out_leg_force[_leg_force_sps[2][leg]] = sps_c_true_z
         # (sps-w_4) reciprocal vector 3
-        out_drive[_drive_sps[0][leg]] = sps_w_4_x
-        out_drive[_drive_sps[1][leg]] = sps_w_4_y
-        out_drive[_drive_sps[2][leg]] = sps_w_4_z
-    return ok, (out_leg_force, out_drive,)
+        out_actuator[_actuator_sps[0][leg]] = sps_w_4_x
+        out_actuator[_actuator_sps[1][leg]] = sps_w_4_y
+        out_actuator[_actuator_sps[2][leg]] = sps_w_4_z
+    return ok, (out_leg_force, out_actuator,)
 
 
 # potential: 357 mul, 258 add, 12 div, 12 sqrt, 12 trig
@@ -4402,7 +4639,7 @@ def _run_potential(m, X):
         R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
         R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
-    sums = [0.0] * 1
+    potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
         sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
@@ -4480,13 +4717,11 @@ def _run_potential(m, X):
             sps_potential_t_10*sps_s_3))
         )
         ok = (
-        ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
-        sums = m.added(sums, leg, (
-        sps_potential_t_13,
-        ))
-    potential_t_2, = sums
+        # (potential) potential energy
+        potential_t_2 += sps_potential_t_13
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy
@@ -4546,7 +4781,7 @@ def _run_condition(m, X):
     out_reach = m.zeros("reach")
     # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
-    sums = [0.0] * 1
+    spread_sps, = [0.0] * 1
     for leg, k in legs[0]:
         (
         sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
@@ -4602,7 +4837,7 @@ def _run_condition(m, X):
         sps_w_4_x = inv_sps_root_2*sps_S_x
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
-        # (sps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (sps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         sps_pivot_size = abs(sps_rho2_1)
         sps_pivot_size_2 = abs(sps_rho2_2)
         sps_pivot_size_3 = abs(sps_w_1_t)
@@ -4622,13 +4857,12 @@ def _run_condition(m, X):
         sps_spread_t*sps_spread_t + sps_spread_t_2*sps_spread_t_2 + sps_spread_t_3*sps_spread_t_3
         )
         clear = (
-        clear & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        clear & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
-            _TOLERANCE * 0.6400000000000001))
+            _TOLERANCE * 0.6400000000000001)
         )
-        sums = m.added(sums, leg, (
-        sps_spread_t_4,
-        ))
+        # (spread) rms distance of the platform points from their centroid
+        spread_sps += sps_spread_t_4
         # (sps-w_4) reciprocal vector 3
         out_H[_H_sps[0][leg]] = sps_w_4_x
         out_H[_H_sps[1][leg]] = sps_w_4_y
@@ -4637,9 +4871,8 @@ def _run_condition(m, X):
         out_H[_H_sps[3][leg]] = sps_H_a_4_x
         out_H[_H_sps[4][leg]] = sps_H_a_4_y
         out_H[_H_sps[5][leg]] = sps_H_a_4_z
-        # (sps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (sps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_sps[0][leg]] = sps_least_pivots
-    spread_sps, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_sps)*spread_t
     # (spread) rms distance of the platform points from their centroid
@@ -4689,48 +4922,48 @@ def _steps_dynamics(m, X, V):
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 12)
-    subtract_2 = required - extend_1
-    take_3 = H[0:6]
-    take_4 = subtract_2[0:6]
-    tau = _solve(take_3, take_4)
+    subtract_1 = required - extend_1
+    take_1 = H[0:6]
+    take_2 = subtract_1[0:6]
+    tau = _solve(take_1, take_2)
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
     times_1 = np.einsum("ijs,js->is", H, tau)
-    extend_2 = _extended(wrench, 12)
-    add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z
-    A = _solve(M, subtract_4)
+    extend_1 = _extended(wrench, 12)
+    add_1 = times_1 + extend_1
+    subtract_1 = add_1 - Z
+    A = _solve(M, subtract_1)
     return (A,)
 
 
 def _steps_complete_acceleration(m, X, V, A, wrench):
     clear_at_1 = _cleared_at(A, [6, 7, 8, 9, 10, 11])
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_2 = np.einsum("ijs,js->is", M, clear_at_1)
-    add_3 = times_2 + Z
-    extend_4 = _extended(wrench, 12)
-    subtract_5 = add_3 - extend_4
-    take_columns_6 = M[:, 6:12]
-    take_7 = take_columns_6[6:12]
-    take_8 = subtract_5[6:12]
-    negative_9 = -take_8
-    solve_10 = _solve(take_7, negative_9)
-    completed = _added_at(clear_at_1, solve_10, [6, 7, 8, 9, 10, 11])
+    times_1 = np.einsum("ijs,js->is", M, clear_at_1)
+    add_1 = times_1 + Z
+    extend_1 = _extended(wrench, 12)
+    subtract_1 = add_1 - extend_1
+    take_columns_1 = M[:, 6:12]
+    take_1 = take_columns_1[6:12]
+    take_2 = subtract_1[6:12]
+    negative_1 = -take_2
+    solve_1 = _solve(take_1, negative_1)
+    completed = _added_at(clear_at_1, solve_1, [6, 7, 8, 9, 10, 11])
     return (completed,)
 
 
 def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 12)
-    subtract_2 = required - extend_1
-    take_3 = H[0:6]
-    take_4 = subtract_2[0:6]
-    solve_5 = _solve(take_3, take_4)
-    leg_force, drive = m.run(_run_legs, ("leg_force", "drive"), X, V, A)
-    forces = _with_forces(leg_force, solve_5, drive, [0, 1, 2, 3, 4, 5])
+    subtract_1 = required - extend_1
+    take_1 = H[0:6]
+    take_2 = subtract_1[0:6]
+    solve_1 = _solve(take_1, take_2)
+    leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
+    forces = _with_forces(leg_force, solve_1, actuator, [0, 1, 2, 3, 4, 5])
     return (forces,)
 
 
@@ -4751,8 +4984,8 @@ def _steps_null_space(m, X):
 def _steps_condition(m, X, length):
     H, lengths, legs, reach = m.run(_run_condition, ("H", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths, length)
-    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5, 6, 7, 8, 9, 10, 11])
-    sigma = _singular_values(divide_rows_2)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5, 6, 7, 8, 9, 10, 11])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
@@ -4832,26 +5065,26 @@ def _steps_rotation(m, X):
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
-    join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    X = _extended(join_2, 13)
+    join_1 = np.concatenate((t, quaternion_of_rotation_1))
+    X = _extended(join_1, 13)
     return (X,)
 
 
 def _steps_X_dot(m, X, V):
     take_1 = V[3:6]
     take_2 = X[3:7]
-    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
-    take_4 = V[0:3]
-    join_5 = np.concatenate((take_4, quaternion_rate_3))
-    take_6 = V[6:12]
-    X_dot = np.concatenate((join_5, take_6))
+    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
+    take_3 = V[0:3]
+    join_1 = np.concatenate((take_3, quaternion_rate_1))
+    take_4 = V[6:12]
+    X_dot = np.concatenate((join_1, take_4))
     return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
-    join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    X = _extended(join_2, 13)
+    join_1 = np.concatenate((t, quaternion_of_rpy_1))
+    X = _extended(join_1, 13)
     return (X,)
 
 
@@ -4862,11 +5095,11 @@ def _steps_retract(m, X, step):
     take_4 = step[0:3]
     take_5 = step[3:6]
     take_6 = step[6:12]
-    turn_quaternion_7 = _turned(take_2, take_5)
-    add_8 = take_1 + take_4
-    add_9 = take_3 + take_6
-    join_10 = np.concatenate((add_8, turn_quaternion_7))
-    X_moved = np.concatenate((join_10, add_9))
+    turn_quaternion_1 = _turned(take_2, take_5)
+    add_1 = take_1 + take_4
+    add_2 = take_3 + take_6
+    join_1 = np.concatenate((add_1, turn_quaternion_1))
+    X_moved = np.concatenate((join_1, add_2))
     return (X_moved,)
 
 
@@ -4877,11 +5110,11 @@ def _steps_difference(m, X0, X1):
     take_4 = X1[0:3]
     take_5 = X1[3:7]
     take_6 = X1[7:13]
-    turn_between_7 = _turn_between(take_2, take_5)
-    subtract_8 = take_4 - take_1
-    subtract_9 = take_6 - take_3
-    join_10 = np.concatenate((subtract_8, turn_between_7))
-    step = np.concatenate((join_10, subtract_9))
+    turn_between_1 = _turn_between(take_2, take_5)
+    subtract_1 = take_4 - take_1
+    subtract_2 = take_6 - take_3
+    join_1 = np.concatenate((subtract_1, turn_between_1))
+    step = np.concatenate((join_1, subtract_2))
     return (step,)
 
 
@@ -4892,23 +5125,23 @@ def _steps_interpolate(m, X0, X1, s):
     take_4 = X1[0:3]
     take_5 = X1[3:7]
     take_6 = X1[7:13]
-    turn_between_7 = _turn_between(take_2, take_5)
-    subtract_8 = take_4 - take_1
-    subtract_9 = take_6 - take_3
-    join_10 = np.concatenate((subtract_8, turn_between_7))
-    join_11 = np.concatenate((join_10, subtract_9))
-    scale_12 = join_11 * s
-    take_13 = X0[0:3]
-    take_14 = X0[3:7]
-    take_15 = X0[7:13]
-    take_16 = scale_12[0:3]
-    take_17 = scale_12[3:6]
-    take_18 = scale_12[6:12]
-    turn_quaternion_19 = _turned(take_14, take_17)
-    add_20 = take_13 + take_16
-    add_21 = take_15 + take_18
-    join_22 = np.concatenate((add_20, turn_quaternion_19))
-    X = np.concatenate((join_22, add_21))
+    turn_between_1 = _turn_between(take_2, take_5)
+    subtract_1 = take_4 - take_1
+    subtract_2 = take_6 - take_3
+    join_1 = np.concatenate((subtract_1, turn_between_1))
+    join_2 = np.concatenate((join_1, subtract_2))
+    scale_1 = join_2 * s
+    take_7 = X0[0:3]
+    take_8 = X0[3:7]
+    take_9 = X0[7:13]
+    take_10 = scale_1[0:3]
+    take_11 = scale_1[3:6]
+    take_12 = scale_1[6:12]
+    turn_quaternion_1 = _turned(take_8, take_11)
+    add_1 = take_7 + take_10
+    add_2 = take_9 + take_12
+    join_3 = np.concatenate((add_1, turn_quaternion_1))
+    X = np.concatenate((join_3, add_2))
     return (X,)
 
 

@@ -54,12 +54,31 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+#define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
+
+/* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
+#define NQ ((size_t)TRICEPT_NQ)
+#define NV ((size_t)TRICEPT_NV)
+#define NU ((size_t)TRICEPT_NU)
+#define NC ((size_t)TRICEPT_NC)
+#define NW ((size_t)TRICEPT_NW)
+#define NJ ((size_t)TRICEPT_NJ)
+#define NL ((size_t)4)
+#define LEGS_OF_ups ((size_t)3)
+#define LEGS_OF_tube ((size_t)1)
+
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
 /* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
    epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
+/* Lengths, or squares of them, that are not larger count as zero. */
+#define LEAST_1 (TOLERANCE*TOLERANCE*R(1.9124953849))
+#define LEAST_2 (TOLERANCE*R(1.38293))
+#define LEAST_3 (TOLERANCE*TOLERANCE*R(1.8225000000000002))
+#define LEAST_4 (TOLERANCE*1)
+#define LEAST_5 (TOLERANCE*R(1.35))
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
 
@@ -114,6 +133,12 @@ INLINE void clear(real *x, size_t n)
     for (size_t i = 0; i < n; ++i) {
         x[i] = 0;
     }
+}
+
+/* What a leg adds to a sum, or gives alone. */
+INLINE void gather(real *sum, int add, real term)
+{
+    *sum = add ? *sum + term : term;
 }
 
 INLINE int is_finite(real x)
@@ -457,36 +482,36 @@ static int acceptable(const tricept_params *p)
     ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->ups_base_point[0][0], 9);
-    ok &= all_within(&p->ups_base_frame[0][0][0], 27);
-    ok &= all_rotations(&p->ups_base_frame[0][0][0], 3);
-    ok &= all_within(&p->ups_platform_point[0][0], 9);
-    ok &= all_within(&p->ups_link2_mass[0], 3);
-    ok &= none_negative(&p->ups_link2_mass[0], 3);
-    ok &= all_within(&p->ups_link2_centre_of_mass[0][0], 9);
-    ok &= all_within(&p->ups_link2_inertia[0][0][0], 27);
-    ok &= all_inertias(&p->ups_link2_inertia[0][0][0], 3);
-    ok &= all_within(&p->ups_link3_mass[0], 3);
-    ok &= none_negative(&p->ups_link3_mass[0], 3);
-    ok &= all_within(&p->ups_link3_centre_of_mass[0][0], 9);
-    ok &= all_within(&p->ups_link3_inertia[0][0][0], 27);
-    ok &= all_inertias(&p->ups_link3_inertia[0][0][0], 3);
-    ok &= all_within(&p->tube_base_point[0][0], 3);
-    ok &= all_within(&p->tube_base_frame[0][0][0], 9);
-    ok &= all_rotations(&p->tube_base_frame[0][0][0], 1);
-    ok &= all_within(&p->tube_platform_point[0][0], 3);
-    ok &= all_within(&p->tube_platform_joint_rotation[0][0][0], 9);
-    ok &= all_rotations(&p->tube_platform_joint_rotation[0][0][0], 1);
-    ok &= all_within(&p->tube_link2_mass[0], 1);
-    ok &= none_negative(&p->tube_link2_mass[0], 1);
-    ok &= all_within(&p->tube_link2_centre_of_mass[0][0], 3);
-    ok &= all_within(&p->tube_link2_inertia[0][0][0], 9);
-    ok &= all_inertias(&p->tube_link2_inertia[0][0][0], 1);
-    ok &= all_within(&p->tube_link3_mass[0], 1);
-    ok &= none_negative(&p->tube_link3_mass[0], 1);
-    ok &= all_within(&p->tube_link3_centre_of_mass[0][0], 3);
-    ok &= all_within(&p->tube_link3_inertia[0][0][0], 9);
-    ok &= all_inertias(&p->tube_link3_inertia[0][0][0], 1);
+    ok &= all_within(&p->ups_base_point[0][0], 3*LEGS_OF_ups);
+    ok &= all_within(&p->ups_base_frame[0][0][0], 9*LEGS_OF_ups);
+    ok &= all_rotations(&p->ups_base_frame[0][0][0], LEGS_OF_ups);
+    ok &= all_within(&p->ups_platform_point[0][0], 3*LEGS_OF_ups);
+    ok &= all_within(&p->ups_link2_mass[0], LEGS_OF_ups);
+    ok &= none_negative(&p->ups_link2_mass[0], LEGS_OF_ups);
+    ok &= all_within(&p->ups_link2_centre_of_mass[0][0], 3*LEGS_OF_ups);
+    ok &= all_within(&p->ups_link2_inertia[0][0][0], 9*LEGS_OF_ups);
+    ok &= all_inertias(&p->ups_link2_inertia[0][0][0], LEGS_OF_ups);
+    ok &= all_within(&p->ups_link3_mass[0], LEGS_OF_ups);
+    ok &= none_negative(&p->ups_link3_mass[0], LEGS_OF_ups);
+    ok &= all_within(&p->ups_link3_centre_of_mass[0][0], 3*LEGS_OF_ups);
+    ok &= all_within(&p->ups_link3_inertia[0][0][0], 9*LEGS_OF_ups);
+    ok &= all_inertias(&p->ups_link3_inertia[0][0][0], LEGS_OF_ups);
+    ok &= all_within(&p->tube_base_point[0][0], 3*LEGS_OF_tube);
+    ok &= all_within(&p->tube_base_frame[0][0][0], 9*LEGS_OF_tube);
+    ok &= all_rotations(&p->tube_base_frame[0][0][0], LEGS_OF_tube);
+    ok &= all_within(&p->tube_platform_point[0][0], 3*LEGS_OF_tube);
+    ok &= all_within(&p->tube_platform_joint_rotation[0][0][0], 9*LEGS_OF_tube);
+    ok &= all_rotations(&p->tube_platform_joint_rotation[0][0][0], LEGS_OF_tube);
+    ok &= all_within(&p->tube_link2_mass[0], LEGS_OF_tube);
+    ok &= none_negative(&p->tube_link2_mass[0], LEGS_OF_tube);
+    ok &= all_within(&p->tube_link2_centre_of_mass[0][0], 3*LEGS_OF_tube);
+    ok &= all_within(&p->tube_link2_inertia[0][0][0], 9*LEGS_OF_tube);
+    ok &= all_inertias(&p->tube_link2_inertia[0][0][0], LEGS_OF_tube);
+    ok &= all_within(&p->tube_link3_mass[0], LEGS_OF_tube);
+    ok &= none_negative(&p->tube_link3_mass[0], LEGS_OF_tube);
+    ok &= all_within(&p->tube_link3_centre_of_mass[0][0], 3*LEGS_OF_tube);
+    ok &= all_within(&p->tube_link3_inertia[0][0][0], 9*LEGS_OF_tube);
+    ok &= all_inertias(&p->tube_link3_inertia[0][0][0], LEGS_OF_tube);
     return ok;
 }
 
@@ -496,16 +521,16 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real m_star_ups = 0;
-    real h_star_ups_in_platform_x = 0;
-    real h_star_ups_in_platform_y = 0;
-    real h_star_ups_in_platform_z = 0;
-    real J_star_ups_in_platform_xx = 0;
-    real J_star_ups_in_platform_xy = 0;
-    real J_star_ups_in_platform_xz = 0;
-    real J_star_ups_in_platform_yy = 0;
-    real J_star_ups_in_platform_yz = 0;
-    real J_star_ups_in_platform_zz = 0;
+    real m_star_of_legs = 0;
+    real h_star_in_platform_x_of_legs = 0;
+    real h_star_in_platform_y_of_legs = 0;
+    real h_star_in_platform_z_of_legs = 0;
+    real J_star_in_platform_xx_of_legs = 0;
+    real J_star_in_platform_xy_of_legs = 0;
+    real J_star_in_platform_xz_of_legs = 0;
+    real J_star_in_platform_yy_of_legs = 0;
+    real J_star_in_platform_yz_of_legs = 0;
+    real J_star_in_platform_zz_of_legs = 0;
     real b_c_ups_in_platform_x = 0;
     real b_c_ups_in_platform_y = 0;
     real b_c_ups_in_platform_z = 0;
@@ -543,8 +568,8 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
-    for (size_t leg = 0; leg < 4; ++leg) {
-        const size_t own = leg < 3 ? leg : 0;
+    for (size_t leg = 0; leg < FILLED(LEGS_OF_ups); ++leg) {
+        const size_t own = leg < LEGS_OF_ups ? leg : 0;
         const real ups_base_point_x = params->ups_base_point[own][0];
         const real ups_base_point_y = params->ups_base_point[own][1];
         const real ups_base_point_z = params->ups_base_point[own][2];
@@ -697,21 +722,21 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
         model->ups_potential_t[leg] = ups_potential_t;
         model->ups_potential_t_2[leg] = ups_potential_t_2;
         model->ups_potential_t_3[leg] = ups_potential_t_3;
-        m_star_ups += leg < 3 ? ups_link3_mass : 0;
-        h_star_ups_in_platform_x += leg < 3 ? ups_h_star_t : 0;
-        h_star_ups_in_platform_y += leg < 3 ? ups_h_star_t_2 : 0;
-        h_star_ups_in_platform_z += leg < 3 ? ups_h_star_t_3 : 0;
-        J_star_ups_in_platform_xx += leg < 3 ? -ups_J_star_t_5 : 0;
-        J_star_ups_in_platform_xy += leg < 3 ? -ups_J_star_t_6 : 0;
-        J_star_ups_in_platform_xz += leg < 3 ? -ups_J_star_t_7 : 0;
-        J_star_ups_in_platform_yy += leg < 3 ? -ups_J_star_t_8 : 0;
-        J_star_ups_in_platform_yz += leg < 3 ? -ups_J_star_t_9 : 0;
-        J_star_ups_in_platform_zz += leg < 3 ? -ups_J_star_t_10 : 0;
-        b_c_ups_in_platform_x += leg < 3 ? ups_platform_point_x : 0;
-        b_c_ups_in_platform_y += leg < 3 ? ups_platform_point_y : 0;
-        b_c_ups_in_platform_z += leg < 3 ? ups_platform_point_z : 0;
+        m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
+        h_star_in_platform_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
+        h_star_in_platform_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
+        h_star_in_platform_z_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_3 : 0;
+        J_star_in_platform_xx_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_5 : 0;
+        J_star_in_platform_xy_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_6 : 0;
+        J_star_in_platform_xz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_7 : 0;
+        J_star_in_platform_yy_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_8 : 0;
+        J_star_in_platform_yz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_9 : 0;
+        J_star_in_platform_zz_of_legs += leg < LEGS_OF_ups ? -ups_J_star_t_10 : 0;
+        b_c_ups_in_platform_x += leg < LEGS_OF_ups ? ups_platform_point_x : 0;
+        b_c_ups_in_platform_y += leg < LEGS_OF_ups ? ups_platform_point_y : 0;
+        b_c_ups_in_platform_z += leg < LEGS_OF_ups ? ups_platform_point_z : 0;
     }
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         const size_t own = leg;
         const real tube_base_point_x = params->tube_base_point[own][0];
         const real tube_base_point_y = params->tube_base_point[own][1];
@@ -875,23 +900,23 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
         b_c_tube_in_platform_z += tube_platform_point_z;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = m_star_ups + platform_mass;
+    const real m_star = m_star_of_legs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_in_platform_x = h_star_t + h_star_ups_in_platform_x;
-    const real h_star_in_platform_y = h_star_t_2 + h_star_ups_in_platform_y;
-    const real h_star_in_platform_z = h_star_t_3 + h_star_ups_in_platform_z;
+    const real h_star_in_platform_x = h_star_in_platform_x_of_legs + h_star_t;
+    const real h_star_in_platform_y = h_star_in_platform_y_of_legs + h_star_t_2;
+    const real h_star_in_platform_z = h_star_in_platform_z_of_legs + h_star_t_3;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_in_platform_xx = J_star_ups_in_platform_xx + platform_inertia_xx -
+    const real J_star_in_platform_xx = J_star_in_platform_xx_of_legs + platform_inertia_xx -
         J_star_t_5;
-    const real J_star_in_platform_xy = J_star_ups_in_platform_xy + platform_inertia_xy -
+    const real J_star_in_platform_xy = J_star_in_platform_xy_of_legs + platform_inertia_xy -
         J_star_t_6;
-    const real J_star_in_platform_xz = J_star_ups_in_platform_xz + platform_inertia_xz -
+    const real J_star_in_platform_xz = J_star_in_platform_xz_of_legs + platform_inertia_xz -
         J_star_t_7;
-    const real J_star_in_platform_yy = J_star_ups_in_platform_yy + platform_inertia_yy -
+    const real J_star_in_platform_yy = J_star_in_platform_yy_of_legs + platform_inertia_yy -
         J_star_t_8;
-    const real J_star_in_platform_yz = J_star_ups_in_platform_yz + platform_inertia_yz -
+    const real J_star_in_platform_yz = J_star_in_platform_yz_of_legs + platform_inertia_yz -
         J_star_t_9;
-    const real J_star_in_platform_zz = J_star_ups_in_platform_zz + platform_inertia_zz -
+    const real J_star_in_platform_zz = J_star_in_platform_zz_of_legs + platform_inertia_zz -
         J_star_t_10;
     const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
@@ -1089,9 +1114,10 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 }
 
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
+#define PADDED(n) (((n) + 4)/4*4)
 INLINE size_t stride_of(size_t n, size_t w)
 {
-    return w == 1 ? (n + 4)/4*4 : n + 1;
+    return w == 1 ? PADDED(n) : n + 1;
 }
 
 INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
@@ -1555,7 +1581,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 {
     enum { Q = 3 };
     const real turn[3] = {part*step[Q], part*step[Q + 1], part*step[Q + 2]};
-    for (size_t i = 0; i < 6; ++i) {
+    for (size_t i = 0; i < NV; ++i) {
         const size_t e = i + (i > Q + 2);
         to[e] = X[e] + part*step[i];
     }
@@ -1564,7 +1590,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 1974 mul, 1448 add, 15 div, 14 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
     verdict *t)
 {
@@ -2028,37 +2054,37 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
         const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_xx : ups_Q_xx;  /* M_tt_ups_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_xy : ups_Q_xy;  /* M_tt_ups_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_xz : ups_Q_xz;  /* M_tt_ups_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_yy : ups_Q_yy;  /* M_tt_ups_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_yz : ups_Q_yz;  /* M_tt_ups_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_zz : ups_Q_zz;  /* M_tt_ups_zz */
+        gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* M_ta_ups_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* M_ta_ups_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* M_ta_ups_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* M_ta_ups_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* M_ta_ups_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* M_ta_ups_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* M_ta_ups_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* M_ta_ups_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* M_ta_ups_zz */
+        gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* M_aa_ups_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* M_aa_ups_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* M_aa_ups_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* M_aa_ups_yy */
-        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* M_aa_ups_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* M_aa_ups_zz */
+        gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[21*count + k] = add ? terms[21*count + k] + ups_U_x : ups_U_x;  /* Z_t_ups_x */
-        terms[22*count + k] = add ? terms[22*count + k] + ups_U_y : ups_U_y;  /* Z_t_ups_y */
-        terms[23*count + k] = add ? terms[23*count + k] + ups_U_z : ups_U_z;  /* Z_t_ups_z */
+        gather(&terms[21*count + k], add, ups_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[22*count + k], add, ups_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[23*count + k], add, ups_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[24*count + k] = add ? terms[24*count + k] + ups_Z_a_t : ups_Z_a_t;  /* Z_a_ups_x */
-        terms[25*count + k] = add ? terms[25*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* Z_a_ups_y */
-        terms[26*count + k] = add ? terms[26*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* Z_a_ups_z */
+        gather(&terms[24*count + k], add, ups_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[25*count + k], add, ups_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[26*count + k], add, ups_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (ups-w_3) reciprocal vector 3 */
         o[0*count + k] = axis_x_ups_axes2_x;
         o[1*count + k] = axis_x_ups_axes2_y;
@@ -2069,10 +2095,9 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         o[5*count + k] = ups_H_a_3_z;
         o[7*count + k] = (axis_x_ups_axes2_x + (axis_x_ups_axes2_y + axis_x_ups_axes2_z)) +
             (ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(1.38293));
+        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -2080,12 +2105,12 @@ INLINE void dynamics_place_ups(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        H[(9 + leg)*w + k] = o[3*count + first + k];
-        H[(12 + leg)*w + k] = o[4*count + first + k];
-        H[(15 + leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + leg)*w + k] = o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
         t->total[k] += o[7*count + first + k];
     }
@@ -2272,21 +2297,21 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
         const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
         const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
         const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
-        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
         const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
         const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
         const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
         const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-mu_c1) the moment that goes with it */
         const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
@@ -2825,7 +2850,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
             tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z);
         /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
             + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y;
         const real tube_dalpha_G_in_axes2_yy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y
@@ -2839,11 +2864,11 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_dalpha_G_in_axes2_zz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z
             + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z;
         /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
             tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
         /* (tube-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
         const real tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17;
         const real tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 -
@@ -2859,7 +2884,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_G_o_in_axes2_z = inv_tube_w_1_t_49*tube_G_o_t_3 +
             tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_w_1_t_77;
         /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 +
             tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2;
         const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 +
@@ -2867,7 +2892,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 +
             tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
         /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_m1_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 +
             tube_h_3_in_spec2_z*tube_m1_w_2;
         const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
@@ -2875,12 +2900,12 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m1_w_2;
         /* (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_G_m1_o_t = tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 +
             tube_G_o_t_3*tube_w_1_t_51 + tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_m1_w_1_t;
         const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
         /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 +
             tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2;
         const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 +
@@ -2888,7 +2913,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 +
             tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
         /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_m2_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 +
             tube_h_3_in_spec2_z*tube_m2_w_2;
         const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
@@ -2896,11 +2921,11 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m2_w_2;
         /* (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_m2_w_1_t;
         const real tube_G_m2_o = -R(1.35)*tube_G_m2_o_t;
         /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 +
             tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2;
         const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 +
@@ -2908,7 +2933,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 +
             tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
         /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_m3_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 +
             tube_h_3_in_spec2_z*tube_m3_w_2;
         const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
@@ -2916,12 +2941,12 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m3_w_2;
         /* (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_G_m3_o_t = tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 +
             tube_G_o_t_3*tube_w_1_t_52 + tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_m3_w_1_t;
         const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
         /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m_in_axes2_xx =
             -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
             tube_dalpha_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
@@ -2944,7 +2969,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_dalpha_G_m_in_axes2_zz = tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z
             + tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
         /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
             tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
         const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
@@ -2964,7 +2989,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z +
             tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
         /* (tube-G_m_o) remainder without the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*tube_end_p2_in_axes2_y -
             tube_G_m3_o*tube_end_p3_in_axes2_z;
         const real tube_G_m_o_in_axes2_y = tube_G_m2_o*tube_n_m2_in_axes2_y -
@@ -3216,38 +3241,38 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_gamma_c3 = inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 -
             tube_mu1_c3_t*tube_nu_1;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + tube_Q_xx : tube_Q_xx;  /* M_tt_tube_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + tube_Q_xy : tube_Q_xy;  /* M_tt_tube_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + tube_Q_xz : tube_Q_xz;  /* M_tt_tube_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + tube_Q_yy : tube_Q_yy;  /* M_tt_tube_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + tube_Q_yz : tube_Q_yz;  /* M_tt_tube_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + tube_Q_zz : tube_Q_zz;  /* M_tt_tube_zz */
+        gather(&terms[0*count + k], add, tube_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, tube_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, tube_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, tube_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, tube_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, tube_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + tube_M_ta_t_13 : tube_M_ta_t_13;  /* M_ta_tube_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + tube_M_ta_t_14 : tube_M_ta_t_14;  /* M_ta_tube_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + tube_M_ta_t_15 : tube_M_ta_t_15;  /* M_ta_tube_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + tube_M_ta_t_16 : tube_M_ta_t_16;  /* M_ta_tube_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + tube_M_ta_t_17 : tube_M_ta_t_17;  /* M_ta_tube_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + tube_M_ta_t_18 : tube_M_ta_t_18;  /* M_ta_tube_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + tube_M_ta_t_19 : tube_M_ta_t_19;  /* M_ta_tube_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + tube_M_ta_t_20 : tube_M_ta_t_20;  /* M_ta_tube_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + tube_M_ta_t_21 : tube_M_ta_t_21;  /* M_ta_tube_zz */
+        gather(&terms[6*count + k], add, tube_M_ta_t_13);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, tube_M_ta_t_14);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, tube_M_ta_t_15);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, tube_M_ta_t_16);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, tube_M_ta_t_17);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, tube_M_ta_t_18);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, tube_M_ta_t_19);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, tube_M_ta_t_20);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, tube_M_ta_t_21);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + tube_M_aa_t_10 : tube_M_aa_t_10;  /* M_aa_tube_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + tube_M_aa_t_11 : tube_M_aa_t_11;  /* M_aa_tube_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + tube_M_aa_t_12 : tube_M_aa_t_12;  /* M_aa_tube_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + tube_M_aa_t_13 : tube_M_aa_t_13;  /* M_aa_tube_yy */
-        terms[19*count + k] = add ? terms[19*count + k] + tube_M_aa_t_14 : tube_M_aa_t_14;  /* M_aa_tube_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + tube_M_aa_t_15 : tube_M_aa_t_15;  /* M_aa_tube_zz */
+        gather(&terms[15*count + k], add, tube_M_aa_t_10);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, tube_M_aa_t_11);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, tube_M_aa_t_12);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, tube_M_aa_t_13);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, tube_M_aa_t_14);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, tube_M_aa_t_15);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[21*count + k] = add ? terms[21*count + k] + tube_U_x : tube_U_x;  /* Z_t_tube_x */
-        terms[22*count + k] = add ? terms[22*count + k] + tube_U_y : tube_U_y;  /* Z_t_tube_y */
-        terms[23*count + k] = add ? terms[23*count + k] + tube_U_z : tube_U_z;  /* Z_t_tube_z */
+        gather(&terms[21*count + k], add, tube_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[22*count + k], add, tube_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[23*count + k], add, tube_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[24*count + k] = add ? terms[24*count + k] + tube_Z_a_t : tube_Z_a_t;  /* Z_a_tube_x */
-        terms[25*count + k] = add ? terms[25*count + k] + tube_Z_a_t_2 : tube_Z_a_t_2;  /* Z_a_tube_y */
-        terms[26*count + k] = add ? terms[26*count + k] + tube_Z_a_t_3 : tube_Z_a_t_3;  /* Z_a_tube_z */
-        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        gather(&terms[24*count + k], add, tube_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[25*count + k], add, tube_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[26*count + k], add, tube_Z_a_t_3);  /* Z_a_z_of_legs */
+        /* (tube-n_c1) unit force of the constraint wrench */
         o[0*count + k] = axis_y_tube_axes2_x;
         o[1*count + k] = axis_y_tube_axes2_y;
         o[2*count + k] = axis_y_tube_axes2_z;
@@ -3258,7 +3283,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
         o[6*count + k] = tube_gamma_c1;
-        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        /* (tube-n_c2) unit force of the constraint wrench */
         o[7*count + k] = axis_z_tube_axes2_x;
         o[8*count + k] = axis_z_tube_axes2_y;
         o[9*count + k] = axis_z_tube_axes2_z;
@@ -3281,14 +3306,12 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             (axis_z_tube_axes2_x + axis_z_tube_axes2_y)))) + (((axis_z_tube_axes2_z +
             tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) + ((tube_gamma_c2 + tube_mu_c3_x) +
             (tube_mu_c3_y + (tube_mu_c3_z + tube_gamma_c3))));
-        o[18*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
-            TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
-            > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_63) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_75)
-            > TOLERANCE*R(1.35));
+        o[18*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -3296,24 +3319,24 @@ INLINE void dynamics_place_tube(size_t w, size_t count, const real *o, size_t fi
     real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[(0)*w + k] = o[0*count + first + k];
-        Hk[(3)*w + k] = o[1*count + first + k];
-        Hk[(6)*w + k] = o[2*count + first + k];
-        Hk[(9)*w + k] = o[3*count + first + k];
-        Hk[(12)*w + k] = o[4*count + first + k];
-        Hk[(15)*w + k] = o[5*count + first + k];
-        constraint_bias[(0)*w + k] = o[6*count + first + k];
-        Hk[(1)*w + k] = o[7*count + first + k];
-        Hk[(4)*w + k] = o[8*count + first + k];
-        Hk[(7)*w + k] = o[9*count + first + k];
-        Hk[(10)*w + k] = o[10*count + first + k];
-        Hk[(13)*w + k] = o[11*count + first + k];
-        Hk[(16)*w + k] = o[12*count + first + k];
-        constraint_bias[(1)*w + k] = o[13*count + first + k];
-        Hk[(11)*w + k] = o[14*count + first + k];
-        Hk[(14)*w + k] = o[15*count + first + k];
-        Hk[(17)*w + k] = o[16*count + first + k];
-        constraint_bias[(2)*w + k] = o[17*count + first + k];
+        Hk[0*NC*w + k] = o[0*count + first + k];
+        Hk[NC*w + k] = o[1*count + first + k];
+        Hk[2*NC*w + k] = o[2*count + first + k];
+        Hk[3*NC*w + k] = o[3*count + first + k];
+        Hk[4*NC*w + k] = o[4*count + first + k];
+        Hk[5*NC*w + k] = o[5*count + first + k];
+        constraint_bias[0*w + k] = o[6*count + first + k];
+        Hk[(0*NC + 1)*w + k] = o[7*count + first + k];
+        Hk[(NC + 1)*w + k] = o[8*count + first + k];
+        Hk[(2*NC + 1)*w + k] = o[9*count + first + k];
+        Hk[(3*NC + 1)*w + k] = o[10*count + first + k];
+        Hk[(4*NC + 1)*w + k] = o[11*count + first + k];
+        Hk[(5*NC + 1)*w + k] = o[12*count + first + k];
+        constraint_bias[1*w + k] = o[13*count + first + k];
+        Hk[(3*NC + 2)*w + k] = o[14*count + first + k];
+        Hk[(4*NC + 2)*w + k] = o[15*count + first + k];
+        Hk[(5*NC + 2)*w + k] = o[16*count + first + k];
+        constraint_bias[2*w + k] = o[17*count + first + k];
         t->singular[k] += o[18*count + first + k];
         t->total[k] += o[19*count + first + k];
     }
@@ -3324,146 +3347,113 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_tube_xx = sums[27*w + k];
-        const real M_tt_ups_xx = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_tube_xx + M_tt_ups_xx + m_star;
-        const real M_tt_tube_xy = sums[28*w + k];
-        const real M_tt_ups_xy = sums[1*w + k];
-        const real M_tt_xy = M_tt_tube_xy + M_tt_ups_xy;
-        const real M_tt_tube_xz = sums[29*w + k];
-        const real M_tt_ups_xz = sums[2*w + k];
-        const real M_tt_xz = M_tt_tube_xz + M_tt_ups_xz;
-        const real M_tt_tube_yy = sums[30*w + k];
-        const real M_tt_ups_yy = sums[3*w + k];
-        const real M_tt_yy = M_tt_tube_yy + M_tt_ups_yy + m_star;
-        const real M_tt_tube_yz = sums[31*w + k];
-        const real M_tt_ups_yz = sums[4*w + k];
-        const real M_tt_yz = M_tt_tube_yz + M_tt_ups_yz;
-        const real M_tt_tube_zz = sums[32*w + k];
-        const real M_tt_ups_zz = sums[5*w + k];
-        const real M_tt_zz = M_tt_tube_zz + M_tt_ups_zz + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_tube_xx = sums[33*w + k];
-        const real M_ta_ups_xx = sums[6*w + k];
-        const real M_ta_xx = M_ta_tube_xx + M_ta_ups_xx;
-        const real M_ta_tube_xy = sums[34*w + k];
-        const real M_ta_ups_xy = sums[7*w + k];
+        const real M_ta_xy_of_legs = sums[7*w + k];
         const real h_star_z = s[20*w + k];
-        const real M_ta_xy = M_ta_tube_xy + M_ta_ups_xy + h_star_z;
-        const real M_ta_tube_xz = sums[35*w + k];
-        const real M_ta_ups_xz = sums[8*w + k];
+        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+        const real M_ta_xz_of_legs = sums[8*w + k];
         const real h_star_y = s[19*w + k];
-        const real M_ta_xz = M_ta_tube_xz + M_ta_ups_xz - h_star_y;
-        const real M_ta_tube_yx = sums[36*w + k];
-        const real M_ta_ups_yx = sums[9*w + k];
-        const real M_ta_yx = M_ta_tube_yx + M_ta_ups_yx - h_star_z;
-        const real M_ta_tube_yy = sums[37*w + k];
-        const real M_ta_ups_yy = sums[10*w + k];
-        const real M_ta_yy = M_ta_tube_yy + M_ta_ups_yy;
-        const real M_ta_tube_yz = sums[38*w + k];
-        const real M_ta_ups_yz = sums[11*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yx_of_legs = sums[9*w + k];
+        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+        const real M_ta_yz_of_legs = sums[11*w + k];
         const real h_star_x = s[18*w + k];
-        const real M_ta_yz = M_ta_tube_yz + M_ta_ups_yz + h_star_x;
-        const real M_ta_tube_zx = sums[39*w + k];
-        const real M_ta_ups_zx = sums[12*w + k];
-        const real M_ta_zx = M_ta_tube_zx + M_ta_ups_zx + h_star_y;
-        const real M_ta_tube_zy = sums[40*w + k];
-        const real M_ta_ups_zy = sums[13*w + k];
-        const real M_ta_zy = M_ta_tube_zy + M_ta_ups_zy - h_star_x;
-        const real M_ta_tube_zz = sums[41*w + k];
-        const real M_ta_ups_zz = sums[14*w + k];
-        const real M_ta_zz = M_ta_tube_zz + M_ta_ups_zz;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+        const real M_ta_zx_of_legs = sums[12*w + k];
+        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+        const real M_ta_zy_of_legs = sums[13*w + k];
+        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[21*w + k];
-        const real M_aa_tube_xx = sums[42*w + k];
-        const real M_aa_ups_xx = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_tube_xx + M_aa_ups_xx;
+        const real M_aa_xx_of_legs = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[22*w + k];
-        const real M_aa_tube_xy = sums[43*w + k];
-        const real M_aa_ups_xy = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_tube_xy + M_aa_ups_xy;
+        const real M_aa_xy_of_legs = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[23*w + k];
-        const real M_aa_tube_xz = sums[44*w + k];
-        const real M_aa_ups_xz = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_tube_xz + M_aa_ups_xz;
+        const real M_aa_xz_of_legs = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
         const real J_star_yy = s[24*w + k];
-        const real M_aa_tube_yy = sums[45*w + k];
-        const real M_aa_ups_yy = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_tube_yy + M_aa_ups_yy;
+        const real M_aa_yy_of_legs = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
         const real J_star_yz = s[25*w + k];
-        const real M_aa_tube_yz = sums[46*w + k];
-        const real M_aa_ups_yz = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_tube_yz + M_aa_ups_yz;
+        const real M_aa_yz_of_legs = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[26*w + k];
-        const real M_aa_tube_zz = sums[47*w + k];
-        const real M_aa_ups_zz = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_tube_zz + M_aa_ups_zz;
+        const real M_aa_zz_of_legs = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real Z_t_tube_x = sums[48*w + k];
-        const real Z_t_ups_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + Z_t_tube_x + Z_t_ups_x;
+        const real Z_t_x_of_legs = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[28*w + k];
-        const real Z_t_tube_y = sums[49*w + k];
-        const real Z_t_ups_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + Z_t_tube_y + Z_t_ups_y;
+        const real Z_t_y_of_legs = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = s[29*w + k];
-        const real Z_t_tube_z = sums[50*w + k];
-        const real Z_t_ups_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + Z_t_tube_z + Z_t_ups_z;
+        const real Z_t_z_of_legs = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_tube_x = sums[51*w + k];
-        const real Z_a_ups_x = sums[24*w + k];
+        const real Z_a_x_of_legs = sums[24*w + k];
         const real Z_q_x = s[30*w + k];
-        const real Z_a_x = Z_a_tube_x + Z_a_ups_x + Z_q_x;
-        const real Z_a_tube_y = sums[52*w + k];
-        const real Z_a_ups_y = sums[25*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[25*w + k];
         const real Z_q_y = s[31*w + k];
-        const real Z_a_y = Z_a_tube_y + Z_a_ups_y + Z_q_y;
-        const real Z_a_tube_z = sums[53*w + k];
-        const real Z_a_ups_z = sums[26*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[26*w + k];
         const real Z_q_z = s[32*w + k];
-        const real Z_a_z = Z_a_tube_z + Z_a_ups_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = M_tt_xy;
-        M[6*w + k] = M_tt_xy;
-        M[2*w + k] = M_tt_xz;
-        M[12*w + k] = M_tt_xz;
-        M[7*w + k] = M_tt_yy;
-        M[8*w + k] = M_tt_yz;
-        M[13*w + k] = M_tt_yz;
-        M[14*w + k] = M_tt_zz;
+        M[0*NV*w + k] = M_tt_xx;
+        const real M_tt_xy = sums[1*w + k];
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*NV*w + k] = M_tt_xz;
+        M[(NV + 1)*w + k] = M_tt_yy;
+        const real M_tt_yz = sums[4*w + k];
+        M[(NV + 2)*w + k] = M_tt_yz;
+        M[(2*NV + 1)*w + k] = M_tt_yz;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
-        M[3*w + k] = M_ta_xx;
-        M[18*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[24*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[30*w + k] = M_ta_xz;
-        M[9*w + k] = M_ta_yx;
-        M[19*w + k] = M_ta_yx;
-        M[10*w + k] = M_ta_yy;
-        M[25*w + k] = M_ta_yy;
-        M[11*w + k] = M_ta_yz;
-        M[31*w + k] = M_ta_yz;
-        M[15*w + k] = M_ta_zx;
-        M[20*w + k] = M_ta_zx;
-        M[16*w + k] = M_ta_zy;
-        M[26*w + k] = M_ta_zy;
-        M[17*w + k] = M_ta_zz;
-        M[32*w + k] = M_ta_zz;
+        const real M_ta_xx = sums[6*w + k];
+        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*NV*w + k] = M_ta_xx;
+        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*NV*w + k] = M_ta_xy;
+        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*NV*w + k] = M_ta_xz;
+        M[(NV + 3)*w + k] = M_ta_yx;
+        M[(3*NV + 1)*w + k] = M_ta_yx;
+        const real M_ta_yy = sums[10*w + k];
+        M[(NV + 4)*w + k] = M_ta_yy;
+        M[(4*NV + 1)*w + k] = M_ta_yy;
+        M[(NV + 5)*w + k] = M_ta_yz;
+        M[(5*NV + 1)*w + k] = M_ta_yz;
+        M[(2*NV + 3)*w + k] = M_ta_zx;
+        M[(3*NV + 2)*w + k] = M_ta_zx;
+        M[(2*NV + 4)*w + k] = M_ta_zy;
+        M[(4*NV + 2)*w + k] = M_ta_zy;
+        const real M_ta_zz = sums[14*w + k];
+        M[(2*NV + 5)*w + k] = M_ta_zz;
+        M[(5*NV + 2)*w + k] = M_ta_zz;
         /* (M_aa) rotational block of M */
-        M[21*w + k] = M_aa_xx;
-        M[22*w + k] = M_aa_xy;
-        M[27*w + k] = M_aa_xy;
-        M[23*w + k] = M_aa_xz;
-        M[33*w + k] = M_aa_xz;
-        M[28*w + k] = M_aa_yy;
-        M[29*w + k] = M_aa_yz;
-        M[34*w + k] = M_aa_yz;
-        M[35*w + k] = M_aa_zz;
+        M[(3*NV + 3)*w + k] = M_aa_xx;
+        M[(3*NV + 4)*w + k] = M_aa_xy;
+        M[(4*NV + 3)*w + k] = M_aa_xy;
+        M[(3*NV + 5)*w + k] = M_aa_xz;
+        M[(5*NV + 3)*w + k] = M_aa_xz;
+        M[(4*NV + 4)*w + k] = M_aa_yy;
+        M[(4*NV + 5)*w + k] = M_aa_yz;
+        M[(5*NV + 4)*w + k] = M_aa_yz;
+        M[(5*NV + 5)*w + k] = M_aa_zz;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -3482,23 +3472,27 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[33] = {0}, sums[54] = {0}, terms_ups[27*LEGS(3)] = {0}, o_ups[8*LEGS(3)] = {0},
-        terms_tube[27*LEGS(1)] = {0}, o_tube[20*LEGS(1)] = {0};
-    clear(Hk, 18);
+    real s[33] = {0};
+    real sums[27] = {0};
+    real terms_ups[27*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[27*LEGS(LEGS_OF_tube)] = {0};
+    real o_tube[20*LEGS(LEGS_OF_tube)] = {0};
+    clear(Hk, NV*NC);
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        dynamics_place_ups(1, LEGS(3), o_ups, leg, leg, H, t);
+    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        dynamics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
     for (size_t n = 0; n < 27; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    dynamics_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_tube, o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        dynamics_place_tube(1, LEGS(1), o_tube, leg, Hk, constraint_bias, t);
+    dynamics_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        dynamics_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, constraint_bias, t);
     }
     for (size_t n = 0; n < 27; ++n) {
-        sums[27 + n] = total(terms_tube + n*LEGS(1), 1);
+        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -3506,23 +3500,25 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[33*LANES], sums[54*LANES], o_ups[8*LANES], o_tube[20*LANES];
-    clear(Hk, 18*LANES);
+    real s[33*LANES];
+    real sums[27*LANES];
+    real o_ups[8*LANES];
+    real o_tube[20*LANES];
+    clear(Hk, NV*NC*LANES);
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         dynamics_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
         dynamics_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
-    clear(sums + 27*LANES, 27*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        dynamics_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, sums + 27*LANES, o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        dynamics_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_tube);
         dynamics_place_tube(LANES, LANES, o_tube, 0, Hk, constraint_bias, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
-/* ---- M: 1196 mul, 845 add, 15 div, 14 sqrt, 0 trig, every leg counted ---- */
+/* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3780,33 +3776,32 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x;
         const real ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_xx : ups_Q_xx;  /* M_tt_ups_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_xy : ups_Q_xy;  /* M_tt_ups_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_xz : ups_Q_xz;  /* M_tt_ups_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_yy : ups_Q_yy;  /* M_tt_ups_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_yz : ups_Q_yz;  /* M_tt_ups_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_zz : ups_Q_zz;  /* M_tt_ups_zz */
+        gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, ups_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* M_ta_ups_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* M_ta_ups_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* M_ta_ups_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* M_ta_ups_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* M_ta_ups_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* M_ta_ups_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* M_ta_ups_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* M_ta_ups_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* M_ta_ups_zz */
+        gather(&terms[6*count + k], add, ups_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, ups_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, ups_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, ups_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, ups_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, ups_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, ups_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, ups_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, ups_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* M_aa_ups_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* M_aa_ups_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* M_aa_ups_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* M_aa_ups_yy */
-        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* M_aa_ups_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* M_aa_ups_zz */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(1.38293));
+        gather(&terms[15*count + k], add, ups_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -3956,15 +3951,15 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
             tube_c_1*tube_n_m3_t_2);
         const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
         const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
         const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
-        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        /* (tube-n_c1) unit force of the constraint wrench */
         const real tube_n_c1_t = tube_s_1*tube_s_2;
         const real tube_n_c1_t_2 = tube_c_1*tube_s_2;
         const real tube_n_c1_x = tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
@@ -3973,7 +3968,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_base_frame_yy*tube_n_c1_t_2;
         const real tube_n_c1_z = tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
             tube_base_frame_zy*tube_n_c1_t_2;
-        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        /* (tube-n_c2) unit force of the constraint wrench */
         const real tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1;
         const real tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1;
         const real tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1;
@@ -4281,7 +4276,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
             tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z);
         /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
             + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y;
         const real tube_dalpha_G_in_axes2_yy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y
@@ -4295,11 +4290,11 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_dalpha_G_in_axes2_zz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z
             + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z;
         /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
             tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
         /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 +
             tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2;
         const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 +
@@ -4307,7 +4302,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 +
             tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
         /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_m1_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 +
             tube_h_3_in_spec2_z*tube_m1_w_2;
         const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
@@ -4315,7 +4310,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m1_w_2;
         /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 +
             tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2;
         const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 +
@@ -4323,7 +4318,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 +
             tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
         /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_m2_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 +
             tube_h_3_in_spec2_z*tube_m2_w_2;
         const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
@@ -4331,7 +4326,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m2_w_2;
         /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 +
             tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2;
         const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 +
@@ -4339,7 +4334,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 +
             tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
         /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_m3_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 +
             tube_h_3_in_spec2_z*tube_m3_w_2;
         const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
@@ -4347,7 +4342,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m3_w_2;
         /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m_in_axes2_xx =
             -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
             tube_dalpha_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
@@ -4370,7 +4365,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_dalpha_G_m_in_axes2_zz = tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z
             + tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
         /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
             tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
         const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
@@ -4553,37 +4548,35 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + tube_M_aa_t_8*tube_n_c1_y +
             tube_M_aa_t_9*tube_n_c2_y);
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + tube_Q_xx : tube_Q_xx;  /* M_tt_tube_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + tube_Q_xy : tube_Q_xy;  /* M_tt_tube_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + tube_Q_xz : tube_Q_xz;  /* M_tt_tube_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + tube_Q_yy : tube_Q_yy;  /* M_tt_tube_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + tube_Q_yz : tube_Q_yz;  /* M_tt_tube_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + tube_Q_zz : tube_Q_zz;  /* M_tt_tube_zz */
+        gather(&terms[0*count + k], add, tube_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, tube_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, tube_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, tube_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, tube_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, tube_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + tube_M_ta_t_13 : tube_M_ta_t_13;  /* M_ta_tube_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + tube_M_ta_t_14 : tube_M_ta_t_14;  /* M_ta_tube_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + tube_M_ta_t_15 : tube_M_ta_t_15;  /* M_ta_tube_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + tube_M_ta_t_16 : tube_M_ta_t_16;  /* M_ta_tube_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + tube_M_ta_t_17 : tube_M_ta_t_17;  /* M_ta_tube_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + tube_M_ta_t_18 : tube_M_ta_t_18;  /* M_ta_tube_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + tube_M_ta_t_19 : tube_M_ta_t_19;  /* M_ta_tube_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + tube_M_ta_t_20 : tube_M_ta_t_20;  /* M_ta_tube_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + tube_M_ta_t_21 : tube_M_ta_t_21;  /* M_ta_tube_zz */
+        gather(&terms[6*count + k], add, tube_M_ta_t_13);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, tube_M_ta_t_14);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, tube_M_ta_t_15);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, tube_M_ta_t_16);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, tube_M_ta_t_17);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, tube_M_ta_t_18);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, tube_M_ta_t_19);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, tube_M_ta_t_20);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, tube_M_ta_t_21);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + tube_M_aa_t_10 : tube_M_aa_t_10;  /* M_aa_tube_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + tube_M_aa_t_11 : tube_M_aa_t_11;  /* M_aa_tube_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + tube_M_aa_t_12 : tube_M_aa_t_12;  /* M_aa_tube_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + tube_M_aa_t_13 : tube_M_aa_t_13;  /* M_aa_tube_yy */
-        terms[19*count + k] = add ? terms[19*count + k] + tube_M_aa_t_14 : tube_M_aa_t_14;  /* M_aa_tube_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + tube_M_aa_t_15 : tube_M_aa_t_15;  /* M_aa_tube_zz */
-        o[0*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
-            TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
-            > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_63) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_75)
-            > TOLERANCE*R(1.35));
+        gather(&terms[15*count + k], add, tube_M_aa_t_10);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, tube_M_aa_t_11);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, tube_M_aa_t_12);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, tube_M_aa_t_13);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, tube_M_aa_t_14);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, tube_M_aa_t_15);  /* M_aa_zz_of_legs */
+        o[0*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -4599,120 +4592,93 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_tube_xx = sums[21*w + k];
-        const real M_tt_ups_xx = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real m_star = m->m_star;
-        const real M_tt_xx = M_tt_tube_xx + M_tt_ups_xx + m_star;
-        const real M_tt_tube_xy = sums[22*w + k];
-        const real M_tt_ups_xy = sums[1*w + k];
-        const real M_tt_xy = M_tt_tube_xy + M_tt_ups_xy;
-        const real M_tt_tube_xz = sums[23*w + k];
-        const real M_tt_ups_xz = sums[2*w + k];
-        const real M_tt_xz = M_tt_tube_xz + M_tt_ups_xz;
-        const real M_tt_tube_yy = sums[24*w + k];
-        const real M_tt_ups_yy = sums[3*w + k];
-        const real M_tt_yy = M_tt_tube_yy + M_tt_ups_yy + m_star;
-        const real M_tt_tube_yz = sums[25*w + k];
-        const real M_tt_ups_yz = sums[4*w + k];
-        const real M_tt_yz = M_tt_tube_yz + M_tt_ups_yz;
-        const real M_tt_tube_zz = sums[26*w + k];
-        const real M_tt_ups_zz = sums[5*w + k];
-        const real M_tt_zz = M_tt_tube_zz + M_tt_ups_zz + m_star;
+        const real M_tt_xx = M_tt_xx_of_legs + m_star;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = M_tt_yy_of_legs + m_star;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
-        const real M_ta_tube_xx = sums[27*w + k];
-        const real M_ta_ups_xx = sums[6*w + k];
-        const real M_ta_xx = M_ta_tube_xx + M_ta_ups_xx;
-        const real M_ta_tube_xy = sums[28*w + k];
-        const real M_ta_ups_xy = sums[7*w + k];
+        const real M_ta_xy_of_legs = sums[7*w + k];
         const real h_star_z = s[14*w + k];
-        const real M_ta_xy = M_ta_tube_xy + M_ta_ups_xy + h_star_z;
-        const real M_ta_tube_xz = sums[29*w + k];
-        const real M_ta_ups_xz = sums[8*w + k];
+        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+        const real M_ta_xz_of_legs = sums[8*w + k];
         const real h_star_y = s[13*w + k];
-        const real M_ta_xz = M_ta_tube_xz + M_ta_ups_xz - h_star_y;
-        const real M_ta_tube_yx = sums[30*w + k];
-        const real M_ta_ups_yx = sums[9*w + k];
-        const real M_ta_yx = M_ta_tube_yx + M_ta_ups_yx - h_star_z;
-        const real M_ta_tube_yy = sums[31*w + k];
-        const real M_ta_ups_yy = sums[10*w + k];
-        const real M_ta_yy = M_ta_tube_yy + M_ta_ups_yy;
-        const real M_ta_tube_yz = sums[32*w + k];
-        const real M_ta_ups_yz = sums[11*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yx_of_legs = sums[9*w + k];
+        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+        const real M_ta_yz_of_legs = sums[11*w + k];
         const real h_star_x = s[12*w + k];
-        const real M_ta_yz = M_ta_tube_yz + M_ta_ups_yz + h_star_x;
-        const real M_ta_tube_zx = sums[33*w + k];
-        const real M_ta_ups_zx = sums[12*w + k];
-        const real M_ta_zx = M_ta_tube_zx + M_ta_ups_zx + h_star_y;
-        const real M_ta_tube_zy = sums[34*w + k];
-        const real M_ta_ups_zy = sums[13*w + k];
-        const real M_ta_zy = M_ta_tube_zy + M_ta_ups_zy - h_star_x;
-        const real M_ta_tube_zz = sums[35*w + k];
-        const real M_ta_ups_zz = sums[14*w + k];
-        const real M_ta_zz = M_ta_tube_zz + M_ta_ups_zz;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+        const real M_ta_zx_of_legs = sums[12*w + k];
+        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+        const real M_ta_zy_of_legs = sums[13*w + k];
+        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[15*w + k];
-        const real M_aa_tube_xx = sums[36*w + k];
-        const real M_aa_ups_xx = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_tube_xx + M_aa_ups_xx;
+        const real M_aa_xx_of_legs = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[16*w + k];
-        const real M_aa_tube_xy = sums[37*w + k];
-        const real M_aa_ups_xy = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_tube_xy + M_aa_ups_xy;
+        const real M_aa_xy_of_legs = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[17*w + k];
-        const real M_aa_tube_xz = sums[38*w + k];
-        const real M_aa_ups_xz = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_tube_xz + M_aa_ups_xz;
+        const real M_aa_xz_of_legs = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
         const real J_star_yy = s[18*w + k];
-        const real M_aa_tube_yy = sums[39*w + k];
-        const real M_aa_ups_yy = sums[18*w + k];
-        const real M_aa_yy = J_star_yy + M_aa_tube_yy + M_aa_ups_yy;
+        const real M_aa_yy_of_legs = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
         const real J_star_yz = s[19*w + k];
-        const real M_aa_tube_yz = sums[40*w + k];
-        const real M_aa_ups_yz = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_tube_yz + M_aa_ups_yz;
+        const real M_aa_yz_of_legs = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[20*w + k];
-        const real M_aa_tube_zz = sums[41*w + k];
-        const real M_aa_ups_zz = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_tube_zz + M_aa_ups_zz;
+        const real M_aa_zz_of_legs = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = M_tt_xy;
-        M[6*w + k] = M_tt_xy;
-        M[2*w + k] = M_tt_xz;
-        M[12*w + k] = M_tt_xz;
-        M[7*w + k] = M_tt_yy;
-        M[8*w + k] = M_tt_yz;
-        M[13*w + k] = M_tt_yz;
-        M[14*w + k] = M_tt_zz;
+        M[0*NV*w + k] = M_tt_xx;
+        const real M_tt_xy = sums[1*w + k];
+        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[NV*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*NV*w + k] = M_tt_xz;
+        M[(NV + 1)*w + k] = M_tt_yy;
+        const real M_tt_yz = sums[4*w + k];
+        M[(NV + 2)*w + k] = M_tt_yz;
+        M[(2*NV + 1)*w + k] = M_tt_yz;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
-        M[3*w + k] = M_ta_xx;
-        M[18*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[24*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[30*w + k] = M_ta_xz;
-        M[9*w + k] = M_ta_yx;
-        M[19*w + k] = M_ta_yx;
-        M[10*w + k] = M_ta_yy;
-        M[25*w + k] = M_ta_yy;
-        M[11*w + k] = M_ta_yz;
-        M[31*w + k] = M_ta_yz;
-        M[15*w + k] = M_ta_zx;
-        M[20*w + k] = M_ta_zx;
-        M[16*w + k] = M_ta_zy;
-        M[26*w + k] = M_ta_zy;
-        M[17*w + k] = M_ta_zz;
-        M[32*w + k] = M_ta_zz;
+        const real M_ta_xx = sums[6*w + k];
+        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*NV*w + k] = M_ta_xx;
+        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*NV*w + k] = M_ta_xy;
+        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*NV*w + k] = M_ta_xz;
+        M[(NV + 3)*w + k] = M_ta_yx;
+        M[(3*NV + 1)*w + k] = M_ta_yx;
+        const real M_ta_yy = sums[10*w + k];
+        M[(NV + 4)*w + k] = M_ta_yy;
+        M[(4*NV + 1)*w + k] = M_ta_yy;
+        M[(NV + 5)*w + k] = M_ta_yz;
+        M[(5*NV + 1)*w + k] = M_ta_yz;
+        M[(2*NV + 3)*w + k] = M_ta_zx;
+        M[(3*NV + 2)*w + k] = M_ta_zx;
+        M[(2*NV + 4)*w + k] = M_ta_zy;
+        M[(4*NV + 2)*w + k] = M_ta_zy;
+        const real M_ta_zz = sums[14*w + k];
+        M[(2*NV + 5)*w + k] = M_ta_zz;
+        M[(5*NV + 2)*w + k] = M_ta_zz;
         /* (M_aa) rotational block of M */
-        M[21*w + k] = M_aa_xx;
-        M[22*w + k] = M_aa_xy;
-        M[27*w + k] = M_aa_xy;
-        M[23*w + k] = M_aa_xz;
-        M[33*w + k] = M_aa_xz;
-        M[28*w + k] = M_aa_yy;
-        M[29*w + k] = M_aa_yz;
-        M[34*w + k] = M_aa_yz;
-        M[35*w + k] = M_aa_zz;
+        M[(3*NV + 3)*w + k] = M_aa_xx;
+        M[(3*NV + 4)*w + k] = M_aa_xy;
+        M[(4*NV + 3)*w + k] = M_aa_xy;
+        M[(3*NV + 5)*w + k] = M_aa_xz;
+        M[(5*NV + 3)*w + k] = M_aa_xz;
+        M[(4*NV + 4)*w + k] = M_aa_yy;
+        M[(4*NV + 5)*w + k] = M_aa_yz;
+        M[(5*NV + 4)*w + k] = M_aa_yz;
+        M[(5*NV + 5)*w + k] = M_aa_zz;
         t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
             M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
             (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
@@ -4722,44 +4688,50 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0}, sums[42] = {0}, terms_ups[21*LEGS(3)] = {0}, o_ups[1*LEGS(3)] = {0},
-        terms_tube[21*LEGS(1)] = {0}, o_tube[1*LEGS(1)] = {0};
+    real s[21] = {0};
+    real sums[21] = {0};
+    real terms_ups[21*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[21*LEGS(LEGS_OF_tube)] = {0};
+    real o_tube[LEGS(LEGS_OF_tube)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        M_place_ups(1, LEGS(3), o_ups, leg, t);
+    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        M_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
     for (size_t n = 0; n < 21; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    M_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_tube, o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        M_place_tube(1, LEGS(1), o_tube, leg, t);
+    M_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        M_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
     }
     for (size_t n = 0; n < 21; ++n) {
-        sums[21 + n] = total(terms_tube + n*LEGS(1), 1);
+        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
     }
     M_after(m, 1, s, sums, M, t);
 }
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES], sums[42*LANES], o_ups[1*LANES], o_tube[1*LANES];
+    real s[21*LANES];
+    real sums[21*LANES];
+    real o_ups[LANES];
+    real o_tube[LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         M_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
         M_place_ups(LANES, LANES, o_ups, 0, t);
     }
-    clear(sums + 21*LANES, 21*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        M_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, sums + 21*LANES, o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        M_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_tube);
         M_place_tube(LANES, LANES, o_tube, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
 }
 
-/* ---- Z: 1091 mul, 783 add, 15 div, 14 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
     *t)
 {
@@ -5116,17 +5088,16 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x;
         const real ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_U_x : ups_U_x;  /* Z_t_ups_x */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_U_y : ups_U_y;  /* Z_t_ups_y */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_U_z : ups_U_z;  /* Z_t_ups_z */
+        gather(&terms[0*count + k], add, ups_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, ups_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, ups_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_Z_a_t : ups_Z_a_t;  /* Z_a_ups_x */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* Z_a_ups_y */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* Z_a_ups_z */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(1.38293));
+        gather(&terms[3*count + k], add, ups_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[4*count + k], add, ups_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[5*count + k], add, ups_Z_a_t_3);  /* Z_a_z_of_legs */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -5318,13 +5289,13 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
         const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
         const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
         const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
         const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-size_c3) size of the moment */
         const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
@@ -5648,7 +5619,7 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
             tube_f_3_o_in_axes2_y*tube_root_2;
         /* (tube-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
         const real tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17;
         const real tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 -
@@ -5664,21 +5635,21 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_G_o_in_axes2_z = inv_tube_w_1_t_49*tube_G_o_t_3 +
             tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_qd_1_t_2;
         /* (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_G_m1_o_t = tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 +
             tube_G_o_t_3*tube_w_1_t_51 + tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_qd_1_t_3;
         const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
         /* (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_qd_1_t_4;
         const real tube_G_m2_o = -R(1.35)*tube_G_m2_o_t;
         /* (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_G_m3_o_t = tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 +
             tube_G_o_t_3*tube_w_1_t_52 + tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_qd_1_t_5;
         const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
         /* (tube-G_m_o) remainder without the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all freedoms */
+           balances the leg's inertia and weight along all degrees of freedom */
         const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*tube_end_p2_in_axes2_y -
             tube_G_m3_o*tube_end_p3_in_axes2_z;
         const real tube_G_m_o_in_axes2_y = tube_G_m2_o*tube_n_m2_in_axes2_y -
@@ -5703,21 +5674,19 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z
             + tube_U_y*tube_q_x - tube_U_x*tube_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + tube_U_x : tube_U_x;  /* Z_t_tube_x */
-        terms[1*count + k] = add ? terms[1*count + k] + tube_U_y : tube_U_y;  /* Z_t_tube_y */
-        terms[2*count + k] = add ? terms[2*count + k] + tube_U_z : tube_U_z;  /* Z_t_tube_z */
+        gather(&terms[0*count + k], add, tube_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, tube_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, tube_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[3*count + k] = add ? terms[3*count + k] + tube_Z_a_t : tube_Z_a_t;  /* Z_a_tube_x */
-        terms[4*count + k] = add ? terms[4*count + k] + tube_Z_a_t_2 : tube_Z_a_t_2;  /* Z_a_tube_y */
-        terms[5*count + k] = add ? terms[5*count + k] + tube_Z_a_t_3 : tube_Z_a_t_3;  /* Z_a_tube_z */
-        o[0*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
-            TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
-            > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_63) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_75)
-            > TOLERANCE*R(1.35));
+        gather(&terms[3*count + k], add, tube_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[4*count + k], add, tube_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[5*count + k], add, tube_Z_a_t_3);  /* Z_a_z_of_legs */
+        o[0*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -5733,30 +5702,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real Z_t_tube_x = sums[6*w + k];
-        const real Z_t_ups_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_tube_x + Z_t_ups_x;
+        const real Z_t_x_of_legs = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[19*w + k];
-        const real Z_t_tube_y = sums[7*w + k];
-        const real Z_t_ups_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_tube_y + Z_t_ups_y;
+        const real Z_t_y_of_legs = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = s[20*w + k];
-        const real Z_t_tube_z = sums[8*w + k];
-        const real Z_t_ups_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_tube_z + Z_t_ups_z;
+        const real Z_t_z_of_legs = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_tube_x = sums[9*w + k];
-        const real Z_a_ups_x = sums[3*w + k];
+        const real Z_a_x_of_legs = sums[3*w + k];
         const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_tube_x + Z_a_ups_x + Z_q_x;
-        const real Z_a_tube_y = sums[10*w + k];
-        const real Z_a_ups_y = sums[4*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[4*w + k];
         const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_tube_y + Z_a_ups_y + Z_q_y;
-        const real Z_a_tube_z = sums[11*w + k];
-        const real Z_a_ups_z = sums[5*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[5*w + k];
         const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_tube_z + Z_a_ups_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -5771,44 +5734,50 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0}, sums[12] = {0}, terms_ups[6*LEGS(3)] = {0}, o_ups[1*LEGS(3)] = {0},
-        terms_tube[6*LEGS(1)] = {0}, o_tube[1*LEGS(1)] = {0};
+    real s[24] = {0};
+    real sums[6] = {0};
+    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[6*LEGS(LEGS_OF_tube)] = {0};
+    real o_tube[LEGS(LEGS_OF_tube)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        Z_place_ups(1, LEGS(3), o_ups, leg, t);
+    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        Z_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    Z_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_tube, o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        Z_place_tube(1, LEGS(1), o_tube, leg, t);
+    Z_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        Z_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[6 + n] = total(terms_tube + n*LEGS(1), 1);
+        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
     }
     Z_after(1, s, sums, Z, t);
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES], sums[12*LANES], o_ups[1*LANES], o_tube[1*LANES];
+    real s[24*LANES];
+    real sums[6*LANES];
+    real o_ups[LANES];
+    real o_tube[LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         Z_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
         Z_place_ups(LANES, LANES, o_ups, 0, t);
     }
-    clear(sums + 6*LANES, 6*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        Z_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, sums + 6*LANES, o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        Z_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_tube);
         Z_place_tube(LANES, LANES, o_tube, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
-/* ---- H: 93 mul, 69 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- H ---- */
 INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -5941,9 +5910,8 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         o[5*count + k] = ups_H_a_3_z;
         o[7*count + k] = (ups_w_3_x + (ups_w_3_y + ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y +
             ups_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_root_2) > TOLERANCE*R(1.38293));
+        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_2) > LEAST_2);
     }
 }
 
@@ -5951,12 +5919,12 @@ INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        H[(9 + leg)*w + k] = o[3*count + first + k];
-        H[(12 + leg)*w + k] = o[4*count + first + k];
-        H[(15 + leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + leg)*w + k] = o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
         t->total[k] += o[7*count + first + k];
     }
@@ -5964,25 +5932,27 @@ INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0}, o_ups[8*LEGS(3)] = {0};
+    real s[12] = {0};
+    real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
     H_before(1, X, s, t);
-    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        H_place_ups(1, LEGS(3), o_ups, leg, leg, H, t);
+    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        H_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
 }
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES], o_ups[8*LANES];
+    real s[12*LANES];
+    real o_ups[8*LANES];
     H_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         H_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
         H_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
 }
 
-/* ---- Hk: 197 mul, 116 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- Hk ---- */
 INLINE void Hk_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -6175,23 +6145,23 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, c
             tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
             tube_c_1*tube_n_m3_t_2);
         const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
         const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2;
-        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
         const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
         const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
         const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
         const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
-        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        /* (tube-n_c1) unit force of the constraint wrench */
         const real tube_n_c1_t = tube_s_1*tube_s_2;
         const real tube_n_c1_t_2 = tube_c_1*tube_s_2;
         const real tube_n_c1_x = tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
@@ -6205,7 +6175,7 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
         const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
             tube_m3_c1_t*tube_n_m3_in_axes2_z;
-        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        /* (tube-n_c2) unit force of the constraint wrench */
         const real tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1;
         const real tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1;
         const real tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1;
@@ -6257,7 +6227,7 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*tube_n_c1_z +
             tube_mu_c2_in_axes2_z*tube_n_c2_z + tube_n_c2_y*tube_q_x -
             axis_x_tube_axes2_z*tube_mu_c2_t - tube_n_c2_x*tube_q_y;
-        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        /* (tube-n_c1) unit force of the constraint wrench */
         o[0*count + k] = tube_n_c1_x;
         o[1*count + k] = tube_n_c1_y;
         o[2*count + k] = tube_n_c1_z;
@@ -6265,7 +6235,7 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, c
         o[3*count + k] = tube_Hk_a_1_x;
         o[4*count + k] = tube_Hk_a_1_y;
         o[5*count + k] = tube_Hk_a_1_z;
-        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        /* (tube-n_c2) unit force of the constraint wrench */
         o[6*count + k] = tube_n_c2_x;
         o[7*count + k] = tube_n_c2_y;
         o[8*count + k] = tube_n_c2_z;
@@ -6281,10 +6251,9 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, c
             tube_Hk_a_1_y) + (tube_Hk_a_1_z + tube_n_c2_x))) + (((tube_n_c2_y + tube_n_c2_z) +
             (tube_Hk_a_2_x + tube_Hk_a_2_y)) + ((tube_Hk_a_2_z + tube_mu_c3_x) + (tube_mu_c3_y +
             tube_mu_c3_z)));
-        o[15*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
-            TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1);
+        o[15*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+            > LEAST_4);
     }
 }
 
@@ -6292,21 +6261,21 @@ INLINE void Hk_place_tube(size_t w, size_t count, const real *o, size_t first, r
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[(0)*w + k] = o[0*count + first + k];
-        Hk[(3)*w + k] = o[1*count + first + k];
-        Hk[(6)*w + k] = o[2*count + first + k];
-        Hk[(9)*w + k] = o[3*count + first + k];
-        Hk[(12)*w + k] = o[4*count + first + k];
-        Hk[(15)*w + k] = o[5*count + first + k];
-        Hk[(1)*w + k] = o[6*count + first + k];
-        Hk[(4)*w + k] = o[7*count + first + k];
-        Hk[(7)*w + k] = o[8*count + first + k];
-        Hk[(10)*w + k] = o[9*count + first + k];
-        Hk[(13)*w + k] = o[10*count + first + k];
-        Hk[(16)*w + k] = o[11*count + first + k];
-        Hk[(11)*w + k] = o[12*count + first + k];
-        Hk[(14)*w + k] = o[13*count + first + k];
-        Hk[(17)*w + k] = o[14*count + first + k];
+        Hk[0*NC*w + k] = o[0*count + first + k];
+        Hk[NC*w + k] = o[1*count + first + k];
+        Hk[2*NC*w + k] = o[2*count + first + k];
+        Hk[3*NC*w + k] = o[3*count + first + k];
+        Hk[4*NC*w + k] = o[4*count + first + k];
+        Hk[5*NC*w + k] = o[5*count + first + k];
+        Hk[(0*NC + 1)*w + k] = o[6*count + first + k];
+        Hk[(NC + 1)*w + k] = o[7*count + first + k];
+        Hk[(2*NC + 1)*w + k] = o[8*count + first + k];
+        Hk[(3*NC + 1)*w + k] = o[9*count + first + k];
+        Hk[(4*NC + 1)*w + k] = o[10*count + first + k];
+        Hk[(5*NC + 1)*w + k] = o[11*count + first + k];
+        Hk[(3*NC + 2)*w + k] = o[12*count + first + k];
+        Hk[(4*NC + 2)*w + k] = o[13*count + first + k];
+        Hk[(5*NC + 2)*w + k] = o[14*count + first + k];
         t->singular[k] += o[15*count + first + k];
         t->total[k] += o[16*count + first + k];
     }
@@ -6314,27 +6283,29 @@ INLINE void Hk_place_tube(size_t w, size_t count, const real *o, size_t first, r
 
 INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    real s[12] = {0}, o_tube[17*LEGS(1)] = {0};
-    clear(Hk, 18);
+    real s[12] = {0};
+    real o_tube[17*LEGS(LEGS_OF_tube)] = {0};
+    clear(Hk, NV*NC);
     Hk_before(1, X, s, t);
-    Hk_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        Hk_place_tube(1, LEGS(1), o_tube, leg, Hk, t);
+    Hk_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        Hk_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, t);
     }
 }
 
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    real s[12*LANES], o_tube[17*LANES];
-    clear(Hk, 18*LANES);
+    real s[12*LANES];
+    real o_tube[17*LANES];
+    clear(Hk, NV*NC*LANES);
     Hk_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         Hk_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
         Hk_place_tube(LANES, LANES, o_tube, 0, Hk, t);
     }
 }
 
-/* ---- constraint_bias: 397 mul, 240 add, 9 div, 8 sqrt, 0 trig, every leg counted ---- */
+/* ---- constraint_bias ---- */
 INLINE void constraint_bias_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -6588,21 +6559,21 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, s
         const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
         const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
         const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
         const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
-        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
         const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
         const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
         const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
         const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-size_c3) size of the moment */
         const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
@@ -6835,14 +6806,12 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, s
            */
         o[2*count + k] = tube_gamma_c3;
         o[4*count + k] = tube_gamma_c1 + (tube_gamma_c2 + tube_gamma_c3);
-        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
-            TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
-            > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_63) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_75)
-            > TOLERANCE*R(1.35));
+        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -6850,9 +6819,9 @@ INLINE void constraint_bias_place_tube(size_t w, size_t count, const real *o, si
     *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        constraint_bias[(0)*w + k] = o[0*count + first + k];
-        constraint_bias[(1)*w + k] = o[1*count + first + k];
-        constraint_bias[(2)*w + k] = o[2*count + first + k];
+        constraint_bias[0*w + k] = o[0*count + first + k];
+        constraint_bias[1*w + k] = o[1*count + first + k];
+        constraint_bias[2*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
     }
@@ -6861,26 +6830,28 @@ INLINE void constraint_bias_place_tube(size_t w, size_t count, const real *o, si
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[18] = {0}, o_tube[5*LEGS(1)] = {0};
+    real s[18] = {0};
+    real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
     constraint_bias_before(1, X, V, s, t);
-    constraint_bias_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        constraint_bias_place_tube(1, LEGS(1), o_tube, leg, constraint_bias, t);
+    constraint_bias_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        constraint_bias_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, constraint_bias, t);
     }
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[18*LANES], o_tube[5*LANES];
+    real s[18*LANES];
+    real o_tube[5*LANES];
     constraint_bias_before(LANES, X, V, s, t);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         constraint_bias_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
         constraint_bias_place_tube(LANES, LANES, o_tube, 0, constraint_bias, t);
     }
 }
 
-/* ---- required: 1225 mul, 902 add, 15 div, 14 sqrt, 0 trig, every leg counted ---- */
+/* ---- required ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
     *A, real *s, verdict *t)
 {
@@ -7279,13 +7250,13 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
         const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_c_x : ups_c_x;  /* R_t_t */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_c_y : ups_c_y;  /* R_t_t_2 */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_c_z : ups_c_z;  /* R_t_t_3 */
+        gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
+        gather(&terms[2*count + k], add, ups_c_z);  /* R_t_z_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_R_a_t : ups_R_a_t;  /* R_a_ups_x */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_R_a_t_2 : ups_R_a_t_2;  /* R_a_ups_y */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_R_a_t_3 : ups_R_a_t_3;  /* R_a_ups_z */
+        gather(&terms[3*count + k], add, ups_R_a_t);  /* R_a_x_of_legs */
+        gather(&terms[4*count + k], add, ups_R_a_t_2);  /* R_a_y_of_legs */
+        gather(&terms[5*count + k], add, ups_R_a_t_3);  /* R_a_z_of_legs */
         /* (ups-w_3) reciprocal vector 3 */
         o[0*count + k] = axis_x_ups_axes2_x;
         o[1*count + k] = axis_x_ups_axes2_y;
@@ -7294,10 +7265,9 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(1.38293));
+        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -7305,12 +7275,12 @@ INLINE void required_place_ups(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        H[(9 + leg)*w + k] = o[3*count + first + k];
-        H[(12 + leg)*w + k] = o[4*count + first + k];
-        H[(15 + leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + leg)*w + k] = o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
     }
 }
@@ -7496,21 +7466,21 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
         const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
         const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
         const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
-        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
         const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
         const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
         const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
         const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-mu_c1) the moment that goes with it */
         const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
@@ -7879,7 +7849,7 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2;
         const real tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2;
         /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z;
         const real tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17;
         const real tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 -
@@ -7894,21 +7864,21 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_G_in_axes2_z = inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 +
             tube_G_t_5*tube_qd_1_t_2;
         /* (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
-           all freedoms */
+           all degrees of freedom */
         const real tube_G_m1_t = tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 +
             tube_G_t_3*tube_w_1_t_51 + tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3;
         const real tube_G_m1 = R(1.35)*tube_G_m1_t;
         /* (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
-           all freedoms */
+           all degrees of freedom */
         const real tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4;
         const real tube_G_m2 = -R(1.35)*tube_G_m2_t;
         /* (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along
-           all freedoms */
+           all degrees of freedom */
         const real tube_G_m3_t = tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 +
             tube_G_t_3*tube_w_1_t_52 + tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5;
         const real tube_G_m3 = R(1.35)*tube_G_m3_t;
         /* (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y -
             tube_G_m3*tube_end_p3_in_axes2_z;
         const real tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y -
@@ -7954,14 +7924,14 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             axis_z_tube_axes2_y*tube_q_x + axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z -
             axis_x_tube_axes2_z*tube_mu_c2_t - axis_z_tube_axes2_x*tube_q_y;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + tube_c_x : tube_c_x;  /* R_t_t_4 */
-        terms[1*count + k] = add ? terms[1*count + k] + tube_c_y : tube_c_y;  /* R_t_t_5 */
-        terms[2*count + k] = add ? terms[2*count + k] + tube_c_z : tube_c_z;  /* R_t_t_6 */
+        gather(&terms[0*count + k], add, tube_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, tube_c_y);  /* R_t_y_of_legs */
+        gather(&terms[2*count + k], add, tube_c_z);  /* R_t_z_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[3*count + k] = add ? terms[3*count + k] + tube_R_a_t : tube_R_a_t;  /* R_a_tube_x */
-        terms[4*count + k] = add ? terms[4*count + k] + tube_R_a_t_2 : tube_R_a_t_2;  /* R_a_tube_y */
-        terms[5*count + k] = add ? terms[5*count + k] + tube_R_a_t_3 : tube_R_a_t_3;  /* R_a_tube_z */
-        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        gather(&terms[3*count + k], add, tube_R_a_t);  /* R_a_x_of_legs */
+        gather(&terms[4*count + k], add, tube_R_a_t_2);  /* R_a_y_of_legs */
+        gather(&terms[5*count + k], add, tube_R_a_t_3);  /* R_a_z_of_legs */
+        /* (tube-n_c1) unit force of the constraint wrench */
         o[0*count + k] = axis_y_tube_axes2_x;
         o[1*count + k] = axis_y_tube_axes2_y;
         o[2*count + k] = axis_y_tube_axes2_z;
@@ -7969,7 +7939,7 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         o[3*count + k] = tube_Hk_a_1_x;
         o[4*count + k] = tube_Hk_a_1_y;
         o[5*count + k] = tube_Hk_a_1_z;
-        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        /* (tube-n_c2) unit force of the constraint wrench */
         o[6*count + k] = axis_z_tube_axes2_x;
         o[7*count + k] = axis_z_tube_axes2_y;
         o[8*count + k] = axis_z_tube_axes2_z;
@@ -7981,14 +7951,12 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         o[12*count + k] = tube_mu_c3_x;
         o[13*count + k] = tube_mu_c3_y;
         o[14*count + k] = tube_mu_c3_z;
-        o[15*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
-            TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
-            > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_63) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_75)
-            > TOLERANCE*R(1.35));
+        o[15*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -7996,21 +7964,21 @@ INLINE void required_place_tube(size_t w, size_t count, const real *o, size_t fi
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[(0)*w + k] = o[0*count + first + k];
-        Hk[(3)*w + k] = o[1*count + first + k];
-        Hk[(6)*w + k] = o[2*count + first + k];
-        Hk[(9)*w + k] = o[3*count + first + k];
-        Hk[(12)*w + k] = o[4*count + first + k];
-        Hk[(15)*w + k] = o[5*count + first + k];
-        Hk[(1)*w + k] = o[6*count + first + k];
-        Hk[(4)*w + k] = o[7*count + first + k];
-        Hk[(7)*w + k] = o[8*count + first + k];
-        Hk[(10)*w + k] = o[9*count + first + k];
-        Hk[(13)*w + k] = o[10*count + first + k];
-        Hk[(16)*w + k] = o[11*count + first + k];
-        Hk[(11)*w + k] = o[12*count + first + k];
-        Hk[(14)*w + k] = o[13*count + first + k];
-        Hk[(17)*w + k] = o[14*count + first + k];
+        Hk[0*NC*w + k] = o[0*count + first + k];
+        Hk[NC*w + k] = o[1*count + first + k];
+        Hk[2*NC*w + k] = o[2*count + first + k];
+        Hk[3*NC*w + k] = o[3*count + first + k];
+        Hk[4*NC*w + k] = o[4*count + first + k];
+        Hk[5*NC*w + k] = o[5*count + first + k];
+        Hk[(0*NC + 1)*w + k] = o[6*count + first + k];
+        Hk[(NC + 1)*w + k] = o[7*count + first + k];
+        Hk[(2*NC + 1)*w + k] = o[8*count + first + k];
+        Hk[(3*NC + 1)*w + k] = o[9*count + first + k];
+        Hk[(4*NC + 1)*w + k] = o[10*count + first + k];
+        Hk[(5*NC + 1)*w + k] = o[11*count + first + k];
+        Hk[(3*NC + 2)*w + k] = o[12*count + first + k];
+        Hk[(4*NC + 2)*w + k] = o[13*count + first + k];
+        Hk[(5*NC + 2)*w + k] = o[14*count + first + k];
         t->singular[k] += o[15*count + first + k];
     }
 }
@@ -8019,31 +7987,25 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
-        const real R_t_t = sums[0*w + k];
-        const real R_t_t_4 = sums[6*w + k];
+        const real R_t_x_of_legs = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real R_t_x = f_p_x - R_t_t - R_t_t_4;
-        const real R_t_t_2 = sums[1*w + k];
-        const real R_t_t_5 = sums[7*w + k];
+        const real R_t_x = f_p_x - R_t_x_of_legs;
+        const real R_t_y_of_legs = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real R_t_y = f_p_y - R_t_t_2 - R_t_t_5;
-        const real R_t_t_3 = sums[2*w + k];
-        const real R_t_t_6 = sums[8*w + k];
+        const real R_t_y = f_p_y - R_t_y_of_legs;
+        const real R_t_z_of_legs = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real R_t_z = f_p_z - R_t_t_3 - R_t_t_6;
+        const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_tube_x = sums[9*w + k];
-        const real R_a_ups_x = sums[3*w + k];
+        const real R_a_x_of_legs = sums[3*w + k];
         const real mu_p_x = s[27*w + k];
-        const real R_a_x = R_a_tube_x + R_a_ups_x + mu_p_x;
-        const real R_a_tube_y = sums[10*w + k];
-        const real R_a_ups_y = sums[4*w + k];
+        const real R_a_x = R_a_x_of_legs + mu_p_x;
+        const real R_a_y_of_legs = sums[4*w + k];
         const real mu_p_y = s[28*w + k];
-        const real R_a_y = R_a_tube_y + R_a_ups_y + mu_p_y;
-        const real R_a_tube_z = sums[11*w + k];
-        const real R_a_ups_z = sums[5*w + k];
+        const real R_a_y = R_a_y_of_legs + mu_p_y;
+        const real R_a_z_of_legs = sums[5*w + k];
         const real mu_p_z = s[29*w + k];
-        const real R_a_z = R_a_tube_z + R_a_ups_z + mu_p_z;
+        const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -8058,23 +8020,27 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
-    real s[30] = {0}, sums[12] = {0}, terms_ups[6*LEGS(3)] = {0}, o_ups[7*LEGS(3)] = {0},
-        terms_tube[6*LEGS(1)] = {0}, o_tube[16*LEGS(1)] = {0};
-    clear(Hk, 18);
+    real s[30] = {0};
+    real sums[6] = {0};
+    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[6*LEGS(LEGS_OF_tube)] = {0};
+    real o_tube[16*LEGS(LEGS_OF_tube)] = {0};
+    clear(Hk, NV*NC);
     required_before(m, 1, X, V, A, s, t);
-    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        required_place_ups(1, LEGS(3), o_ups, leg, leg, H, t);
+    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        required_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    required_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_tube, o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        required_place_tube(1, LEGS(1), o_tube, leg, Hk, t);
+    required_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        required_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[6 + n] = total(terms_tube + n*LEGS(1), 1);
+        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
     }
     required_after(1, s, sums, required);
 }
@@ -8082,23 +8048,25 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, real *Hk, verdict *t)
 {
-    real s[30*LANES], sums[12*LANES], o_ups[7*LANES], o_tube[16*LANES];
-    clear(Hk, 18*LANES);
+    real s[30*LANES];
+    real sums[6*LANES];
+    real o_ups[7*LANES];
+    real o_tube[16*LANES];
+    clear(Hk, NV*NC*LANES);
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         required_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
         required_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
-    clear(sums + 6*LANES, 6*LANES);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        required_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, sums + 6*LANES, o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        required_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_tube);
         required_place_tube(LANES, LANES, o_tube, 0, Hk, t);
     }
     required_after(LANES, s, sums, required);
 }
 
-/* ---- inverse_kinematics: 108 mul, 80 add, 8 div, 8 sqrt, 8 trig, every leg counted ---- */
+/* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -8225,8 +8193,8 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg,
         /* (ups-q_3) displacement of joint 3 */
         o[2*count + k] = ups_root_2;
         o[4*count + k] = ups_q_1 + (ups_q_2 + ups_root_2);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849));
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1);
     }
 }
 
@@ -8234,7 +8202,7 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t count, const real *o, 
     first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(3*leg)*w + k] = o[0*count + first + k];
+        q[3*leg*w + k] = o[0*count + first + k];
         q[(1 + 3*leg)*w + k] = o[1*count + first + k];
         q[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -8315,9 +8283,8 @@ INLINE void inverse_kinematics_legs_tube(const prepared *m, size_t w, size_t leg
         /* (tube-q_3) displacement of joint 3 */
         o[2*count + k] = tube_root_2;
         o[4*count + k] = tube_q_1 + (tube_q_2 + tube_root_2);
-        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002));
+        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3);
     }
 }
 
@@ -8325,9 +8292,9 @@ INLINE void inverse_kinematics_place_tube(size_t w, size_t count, const real *o,
     real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(9)*w + k] = o[0*count + first + k];
-        q[(10)*w + k] = o[1*count + first + k];
-        q[(11)*w + k] = o[2*count + first + k];
+        q[9*w + k] = o[0*count + first + k];
+        q[10*w + k] = o[1*count + first + k];
+        q[11*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
     }
@@ -8335,33 +8302,37 @@ INLINE void inverse_kinematics_place_tube(size_t w, size_t count, const real *o,
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0}, o_ups[5*LEGS(3)] = {0}, o_tube[5*LEGS(1)] = {0};
+    real s[12] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
     inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        inverse_kinematics_place_ups(1, LEGS(3), o_ups, leg, leg, q, t);
+    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        inverse_kinematics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, q, t);
     }
-    inverse_kinematics_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        inverse_kinematics_place_tube(1, LEGS(1), o_tube, leg, q, t);
+    inverse_kinematics_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        inverse_kinematics_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, q, t);
     }
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES], o_ups[5*LANES], o_tube[5*LANES];
+    real s[12*LANES];
+    real o_ups[5*LANES];
+    real o_tube[5*LANES];
     inverse_kinematics_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         inverse_kinematics_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
         inverse_kinematics_place_ups(LANES, LANES, o_ups, leg, 0, q, t);
     }
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         inverse_kinematics_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
         inverse_kinematics_place_tube(LANES, LANES, o_tube, 0, q, t);
     }
 }
 
-/* ---- joint_rates: 495 mul, 306 add, 15 div, 14 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates ---- */
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -8537,10 +8508,9 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t
         /* (ups-qd_3) rate of joint 3 */
         o[2*count + k] = ups_S_dot_in_axes2_x;
         o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(1.38293));
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -8548,7 +8518,7 @@ INLINE void joint_rates_place_ups(size_t w, size_t count, const real *o, size_t 
     real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(3*leg)*w + k] = o[0*count + first + k];
+        qd[3*leg*w + k] = o[0*count + first + k];
         qd[(1 + 3*leg)*w + k] = o[1*count + first + k];
         qd[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -8731,13 +8701,13 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
             tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
             tube_c_1*tube_n_m3_t_2);
         const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
         const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
         const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-size_c3) size of the moment */
         const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
@@ -8885,14 +8855,12 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
         /* (tube-qd_3) rate of joint 3 */
         o[2*count + k] = tube_S_dot_in_axes2_x;
         o[4*count + k] = tube_qd_1 + (tube_qd_2 + tube_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
-            TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
-            > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_63) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_75)
-            > TOLERANCE*R(1.35));
+        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -8900,9 +8868,9 @@ INLINE void joint_rates_place_tube(size_t w, size_t count, const real *o, size_t
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(9)*w + k] = o[0*count + first + k];
-        qd[(10)*w + k] = o[1*count + first + k];
-        qd[(11)*w + k] = o[2*count + first + k];
+        qd[9*w + k] = o[0*count + first + k];
+        qd[10*w + k] = o[1*count + first + k];
+        qd[11*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
     }
@@ -8910,34 +8878,38 @@ INLINE void joint_rates_place_tube(size_t w, size_t count, const real *o, size_t
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0}, o_ups[5*LEGS(3)] = {0}, o_tube[5*LEGS(1)] = {0};
+    real s[18] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
     joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_rates_place_ups(1, LEGS(3), o_ups, leg, leg, qd, t);
+    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        joint_rates_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qd, t);
     }
-    joint_rates_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        joint_rates_place_tube(1, LEGS(1), o_tube, leg, qd, t);
+    joint_rates_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        joint_rates_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, qd, t);
     }
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES], o_ups[5*LANES], o_tube[5*LANES];
+    real s[18*LANES];
+    real o_ups[5*LANES];
+    real o_tube[5*LANES];
     joint_rates_before(LANES, X, V, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         joint_rates_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
         joint_rates_place_ups(LANES, LANES, o_ups, leg, 0, qd, t);
     }
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         joint_rates_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
         joint_rates_place_tube(LANES, LANES, o_tube, 0, qd, t);
     }
 }
 
-/* ---- joint_accelerations: 737 mul, 470 add, 15 div, 14 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations ---- */
 INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
     *s, verdict *t)
 {
@@ -9172,10 +9144,9 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg
         /* (ups-qdd_3) acceleration of joint 3 */
         o[2*count + k] = ups_rel_in_axes2_x;
         o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(1.38293));
+        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -9183,7 +9154,7 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t count, const real *o,
     size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(3*leg)*w + k] = o[0*count + first + k];
+        qdd[3*leg*w + k] = o[0*count + first + k];
         qdd[(1 + 3*leg)*w + k] = o[1*count + first + k];
         qdd[(2 + 3*leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -9372,13 +9343,13 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t le
         const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
         const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
         const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
         const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
         const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-size_c3) size of the moment */
         const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
@@ -9649,14 +9620,12 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t le
         /* (tube-qdd_3) acceleration of joint 3 */
         o[2*count + k] = tube_rel_in_axes2_x;
         o[4*count + k] = tube_qdd_1 + (tube_qdd_2 + tube_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
-            TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
-            > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_63) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_75)
-            > TOLERANCE*R(1.35));
+        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -9664,9 +9633,9 @@ INLINE void joint_accelerations_place_tube(size_t w, size_t count, const real *o
     real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(9)*w + k] = o[0*count + first + k];
-        qdd[(10)*w + k] = o[1*count + first + k];
-        qdd[(11)*w + k] = o[2*count + first + k];
+        qdd[9*w + k] = o[0*count + first + k];
+        qdd[10*w + k] = o[1*count + first + k];
+        qdd[11*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
     }
@@ -9675,34 +9644,38 @@ INLINE void joint_accelerations_place_tube(size_t w, size_t count, const real *o
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0}, o_ups[5*LEGS(3)] = {0}, o_tube[5*LEGS(1)] = {0};
+    real s[24] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
     joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_accelerations_place_ups(1, LEGS(3), o_ups, leg, leg, qdd, t);
+    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        joint_accelerations_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qdd, t);
     }
-    joint_accelerations_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        joint_accelerations_place_tube(1, LEGS(1), o_tube, leg, qdd, t);
+    joint_accelerations_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        joint_accelerations_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES], o_ups[5*LANES], o_tube[5*LANES];
+    real s[24*LANES];
+    real o_ups[5*LANES];
+    real o_tube[5*LANES];
     joint_accelerations_before(LANES, X, V, A, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         joint_accelerations_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
         joint_accelerations_place_ups(LANES, LANES, o_ups, leg, 0, qdd, t);
     }
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         joint_accelerations_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
         joint_accelerations_place_tube(LANES, LANES, o_tube, 0, qdd, t);
     }
 }
 
-/* ---- constraints: 134 mul, 76 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- constraints ---- */
 INLINE void constraints_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -9892,42 +9865,41 @@ INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t leg, size_
         const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
         const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
         const real tube_n_m3_t_5 = tube_s_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1);
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
         const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
         const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-size_c3) size of the moment */
         const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
         /* (tube-mu2_c3) moment along direction 2 that goes with it */
         const real tube_mu2_c3 = 1/tube_size_c3;
-        /* (tube-phi_c1) distance by which the leg misses the platform, along a direction left out */
+        /* (tube-phi_c1) loop-closure residual along the constraint force */
         const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
         const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
         const real tube_phi_c1 = inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_root_2
             - inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_root_2;
-        /* (tube-phi_c2) distance by which the leg misses the platform, along a direction left out */
+        /* (tube-phi_c2) loop-closure residual along the constraint force */
         const real tube_phi_c2 =
             inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_in_axes2_z*tube_root_1 +
             inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-phi_c3) angle by which the leg misses the platform, about a direction left out */
+        /* (tube-phi_c3) loop-closure residual about the constraint moment */
         const real tube_phi_c3 = tube_end_p1_in_axes2_x*tube_m1_c3_t*tube_mu2_c3 +
             tube_end_p3_in_axes2_y*tube_m3_c3*tube_mu2_c3 - tube_mu2_c3*(tube_c_1*tube_n_m2_t +
             tube_n_m2_t_2*tube_s_1);
-        /* (tube-phi_c1) distance by which the leg misses the platform, along a direction left out */
+        /* (tube-phi_c1) loop-closure residual along the constraint force */
         o[0*count + k] = tube_phi_c1;
-        /* (tube-phi_c2) distance by which the leg misses the platform, along a direction left out */
+        /* (tube-phi_c2) loop-closure residual along the constraint force */
         o[1*count + k] = tube_phi_c2;
-        /* (tube-phi_c3) angle by which the leg misses the platform, about a direction left out */
+        /* (tube-phi_c3) loop-closure residual about the constraint moment */
         o[2*count + k] = tube_phi_c3;
         o[4*count + k] = tube_phi_c1 + (tube_phi_c2 + tube_phi_c3);
-        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
-            TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1);
+        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+            > LEAST_4);
     }
 }
 
@@ -9935,9 +9907,9 @@ INLINE void constraints_place_tube(size_t w, size_t count, const real *o, size_t
     *constraints, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        constraints[(0)*w + k] = o[0*count + first + k];
-        constraints[(1)*w + k] = o[1*count + first + k];
-        constraints[(2)*w + k] = o[2*count + first + k];
+        constraints[0*w + k] = o[0*count + first + k];
+        constraints[1*w + k] = o[1*count + first + k];
+        constraints[2*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
         t->total[k] += o[4*count + first + k];
     }
@@ -9945,25 +9917,27 @@ INLINE void constraints_place_tube(size_t w, size_t count, const real *o, size_t
 
 INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[12] = {0}, o_tube[5*LEGS(1)] = {0};
+    real s[12] = {0};
+    real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
     constraints_before(1, X, s, t);
-    constraints_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        constraints_place_tube(1, LEGS(1), o_tube, leg, constraints, t);
+    constraints_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        constraints_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, constraints, t);
     }
 }
 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[12*LANES], o_tube[5*LANES];
+    real s[12*LANES];
+    real o_tube[5*LANES];
     constraints_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 1; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         constraints_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
         constraints_place_tube(LANES, LANES, o_tube, 0, constraints, t);
     }
 }
 
-/* ---- legs: 1087 mul, 764 add, 15 div, 14 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs ---- */
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
     *t)
 {
@@ -10286,23 +10260,22 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, 
         o[3*count + k] = axis_x_ups_axes2_x;
         o[4*count + k] = axis_x_ups_axes2_y;
         o[5*count + k] = axis_x_ups_axes2_z;
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(1.38293));
+        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
 INLINE void legs_place_ups(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *drive, verdict *t)
+    *leg_force, real *actuator, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(6*leg)*w + k] = o[0*count + first + k];
-        leg_force[(1 + 6*leg)*w + k] = o[1*count + first + k];
-        leg_force[(2 + 6*leg)*w + k] = o[2*count + first + k];
-        drive[(6*leg)*w + k] = o[3*count + first + k];
-        drive[(1 + 6*leg)*w + k] = o[4*count + first + k];
-        drive[(2 + 6*leg)*w + k] = o[5*count + first + k];
+        leg_force[6*leg*w + k] = o[0*count + first + k];
+        leg_force[(6*leg + 1)*w + k] = o[1*count + first + k];
+        leg_force[(6*leg + 2)*w + k] = o[2*count + first + k];
+        actuator[6*leg*w + k] = o[3*count + first + k];
+        actuator[(6*leg + 1)*w + k] = o[4*count + first + k];
+        actuator[(6*leg + 2)*w + k] = o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
     }
 }
@@ -10488,21 +10461,21 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
         const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
         const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
         const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
-        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
         const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
         const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
         const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
         const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-mu_c1) the moment that goes with it */
         const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
@@ -10883,7 +10856,7 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2;
         const real tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2;
         /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z;
         const real tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17;
         const real tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 -
@@ -10898,21 +10871,21 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         const real tube_G_in_axes2_z = inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 +
             tube_G_t_5*tube_qd_1_t_2;
         /* (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
-           all freedoms */
+           all degrees of freedom */
         const real tube_G_m1_t = tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 +
             tube_G_t_3*tube_w_1_t_51 + tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3;
         const real tube_G_m1 = R(1.35)*tube_G_m1_t;
         /* (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
-           all freedoms */
+           all degrees of freedom */
         const real tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4;
         const real tube_G_m2 = -R(1.35)*tube_G_m2_t;
         /* (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along
-           all freedoms */
+           all degrees of freedom */
         const real tube_G_m3_t = tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 +
             tube_G_t_3*tube_w_1_t_52 + tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5;
         const real tube_G_m3 = R(1.35)*tube_G_m3_t;
         /* (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y -
             tube_G_m3*tube_end_p3_in_axes2_z;
         const real tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y -
@@ -10943,7 +10916,7 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         o[3*count + k] = tube_c_m_x;
         o[4*count + k] = tube_c_m_y;
         o[5*count + k] = tube_c_m_z;
-        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        /* (tube-n_c1) unit force of the constraint wrench */
         o[6*count + k] = axis_y_tube_axes2_x;
         o[7*count + k] = axis_y_tube_axes2_y;
         o[8*count + k] = axis_y_tube_axes2_z;
@@ -10951,7 +10924,7 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         o[9*count + k] = tube_mu_c1_x;
         o[10*count + k] = tube_mu_c1_y;
         o[11*count + k] = tube_mu_c1_z;
-        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        /* (tube-n_c2) unit force of the constraint wrench */
         o[12*count + k] = axis_z_tube_axes2_x;
         o[13*count + k] = axis_z_tube_axes2_y;
         o[14*count + k] = axis_z_tube_axes2_z;
@@ -10963,14 +10936,12 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         o[18*count + k] = tube_mu_c3_x;
         o[19*count + k] = tube_mu_c3_y;
         o[20*count + k] = tube_mu_c3_z;
-        o[21*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
-            TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
-            > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_63) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_75)
-            > TOLERANCE*R(1.35));
+        o[21*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -10978,50 +10949,52 @@ INLINE void legs_place_tube(size_t w, size_t count, const real *o, size_t first,
     real *constraint_direction, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(18)*w + k] = o[0*count + first + k];
-        leg_force[(19)*w + k] = o[1*count + first + k];
-        leg_force[(20)*w + k] = o[2*count + first + k];
-        leg_force[(21)*w + k] = o[3*count + first + k];
-        leg_force[(22)*w + k] = o[4*count + first + k];
-        leg_force[(23)*w + k] = o[5*count + first + k];
-        constraint_direction[(0)*w + k] = o[6*count + first + k];
-        constraint_direction[(1)*w + k] = o[7*count + first + k];
-        constraint_direction[(2)*w + k] = o[8*count + first + k];
-        constraint_direction[(3)*w + k] = o[9*count + first + k];
-        constraint_direction[(4)*w + k] = o[10*count + first + k];
-        constraint_direction[(5)*w + k] = o[11*count + first + k];
-        constraint_direction[(6)*w + k] = o[12*count + first + k];
-        constraint_direction[(7)*w + k] = o[13*count + first + k];
-        constraint_direction[(8)*w + k] = o[14*count + first + k];
-        constraint_direction[(9)*w + k] = o[15*count + first + k];
-        constraint_direction[(10)*w + k] = o[16*count + first + k];
-        constraint_direction[(11)*w + k] = o[17*count + first + k];
-        constraint_direction[(15)*w + k] = o[18*count + first + k];
-        constraint_direction[(16)*w + k] = o[19*count + first + k];
-        constraint_direction[(17)*w + k] = o[20*count + first + k];
+        leg_force[18*w + k] = o[0*count + first + k];
+        leg_force[(18 + 1)*w + k] = o[1*count + first + k];
+        leg_force[(18 + 2)*w + k] = o[2*count + first + k];
+        leg_force[(18 + 3)*w + k] = o[3*count + first + k];
+        leg_force[(18 + 4)*w + k] = o[4*count + first + k];
+        leg_force[(18 + 5)*w + k] = o[5*count + first + k];
+        constraint_direction[0*w + k] = o[6*count + first + k];
+        constraint_direction[1*w + k] = o[7*count + first + k];
+        constraint_direction[2*w + k] = o[8*count + first + k];
+        constraint_direction[3*w + k] = o[9*count + first + k];
+        constraint_direction[4*w + k] = o[10*count + first + k];
+        constraint_direction[5*w + k] = o[11*count + first + k];
+        constraint_direction[6*w + k] = o[12*count + first + k];
+        constraint_direction[(6 + 1)*w + k] = o[13*count + first + k];
+        constraint_direction[(6 + 2)*w + k] = o[14*count + first + k];
+        constraint_direction[(6 + 3)*w + k] = o[15*count + first + k];
+        constraint_direction[(6 + 4)*w + k] = o[16*count + first + k];
+        constraint_direction[(6 + 5)*w + k] = o[17*count + first + k];
+        constraint_direction[(12 + 3)*w + k] = o[18*count + first + k];
+        constraint_direction[(12 + 4)*w + k] = o[19*count + first + k];
+        constraint_direction[(12 + 5)*w + k] = o[20*count + first + k];
         t->singular[k] += o[21*count + first + k];
     }
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *drive, real *constraint_direction, verdict *t)
+    *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
-    real s[24] = {0}, o_ups[7*LEGS(3)] = {0}, o_tube[22*LEGS(1)] = {0};
-    clear(leg_force, 24);
-    clear(drive, 18);
-    clear(constraint_direction, 18);
+    real s[24] = {0};
+    real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
+    real o_tube[22*LEGS(LEGS_OF_tube)] = {0};
+    clear(leg_force, 6*NL);
+    clear(actuator, 18);
+    clear(constraint_direction, 6*NC);
     legs_before(1, X, V, A, s, t);
-    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        legs_place_ups(1, LEGS(3), o_ups, leg, leg, leg_force, drive, t);
+    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        legs_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, leg_force, actuator, t);
     }
-    legs_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        legs_place_tube(1, LEGS(1), o_tube, leg, leg_force, constraint_direction, t);
+    legs_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        legs_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, leg_force, constraint_direction, t);
     }
 }
 
-/* ---- potential: 214 mul, 165 add, 8 div, 8 sqrt, 0 trig, every leg counted ---- */
+/* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -11183,9 +11156,9 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
             ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
             ups_potential_t_3*ups_s_2));
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_potential_t_6 : ups_potential_t_6;  /* potential_ups */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849));
+        gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
+        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1);
     }
 }
 
@@ -11295,10 +11268,9 @@ INLINE void potential_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
             tube_b_in_spec2_x*tube_link2_mass + tube_link3_mass*(tube_b_in_spec2_x +
             tube_root_2));
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + tube_potential_t_6 : tube_potential_t_6;  /* potential_tube */
-        o[0*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002));
+        gather(&terms[0*count + k], add, tube_potential_t_6);  /* potential_of_legs */
+        o[0*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3);
     }
 }
 
@@ -11313,10 +11285,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
+        const real potential_of_legs = sums[0*w + k];
         const real potential_t = s[12*w + k];
-        const real potential_tube = sums[1*w + k];
-        const real potential_ups = sums[0*w + k];
-        const real potential_ = potential_tube + potential_ups - potential_t;
+        const real potential_ = potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
@@ -11324,27 +11295,31 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0}, sums[2] = {0}, terms_ups[1*LEGS(3)] = {0}, o_ups[1*LEGS(3)] = {0},
-        terms_tube[1*LEGS(1)] = {0}, o_tube[1*LEGS(1)] = {0};
+    real s[13] = {0};
+    real sums[1] = {0};
+    real terms_ups[LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[LEGS(LEGS_OF_tube)] = {0};
+    real o_tube[LEGS(LEGS_OF_tube)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        potential_place_ups(1, LEGS(3), o_ups, leg, t);
+    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        potential_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    potential_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_tube, o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        potential_place_tube(1, LEGS(1), o_tube, leg, t);
+    potential_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        potential_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[1 + n] = total(terms_tube + n*LEGS(1), 1);
+        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
     }
     potential_after(1, s, sums, potential);
 }
 
-/* ---- condition: 431 mul, 292 add, 11 div, 23 sqrt, 0 trig, every leg counted ---- */
+/* ---- condition ---- */
 INLINE void condition_before(size_t w, const real *X, real *s, real *lengths, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -11470,7 +11445,7 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
         const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real ups_pivot_size = magnitude(ups_rho2_1);
         const real ups_pivot_size_2 = magnitude(ups_rho2_2);
         const real ups_pivot_size_3 = magnitude(ups_root_1);
@@ -11493,7 +11468,7 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
             ups_spread_t_3*ups_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + ups_spread_t_4 : ups_spread_t_4;  /* spread_ups */
+        gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
         /* (ups-w_3) reciprocal vector 3 */
         o[0*count + k] = ups_w_3_x;
         o[1*count + k] = ups_w_3_y;
@@ -11503,14 +11478,13 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[6*count + k] = ups_least_pivots;
         o[8*count + k] = (ups_w_3_x + (ups_w_3_y + ups_w_3_z)) + ((ups_H_a_3_x + ups_H_a_3_y) +
             (ups_H_a_3_z + ups_least_pivots));
-        o[7*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
-            UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
-            TOLERANCE*R(1.38293));
+        o[7*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
+            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
+            LEAST_2);
     }
 }
 
@@ -11518,13 +11492,13 @@ INLINE void condition_place_ups(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        H[(9 + leg)*w + k] = o[3*count + first + k];
-        H[(12 + leg)*w + k] = o[4*count + first + k];
-        H[(15 + leg)*w + k] = o[5*count + first + k];
-        pivots[(leg)*w + k] = o[6*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + leg)*w + k] = o[5*count + first + k];
+        pivots[leg*w + k] = o[6*count + first + k];
         t->singular[k] += o[7*count + first + k];
         t->total[k] += o[8*count + first + k];
     }
@@ -11669,23 +11643,23 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
             tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
             tube_c_1*tube_n_m3_t_2);
         const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_3;
-        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
         const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2;
-        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
         const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
         const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
         const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
         const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
-        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        /* (tube-n_c1) unit force of the constraint wrench */
         const real tube_n_c1_t = tube_s_1*tube_s_2;
         const real tube_n_c1_t_2 = tube_c_1*tube_s_2;
         const real tube_n_c1_x = tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
@@ -11699,7 +11673,7 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
         const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
             tube_m3_c1_t*tube_n_m3_in_axes2_z;
-        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        /* (tube-n_c2) unit force of the constraint wrench */
         const real tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1;
         const real tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1;
         const real tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1;
@@ -11871,8 +11845,8 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_spread_t_4 = tube_spread_t*tube_spread_t + tube_spread_t_2*tube_spread_t_2
             + tube_spread_t_3*tube_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + tube_spread_t_4 : tube_spread_t_4;  /* spread_tube */
-        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        gather(&terms[1*count + k], add, tube_spread_t_4);  /* spread_tube */
+        /* (tube-n_c1) unit force of the constraint wrench */
         o[0*count + k] = tube_n_c1_x;
         o[1*count + k] = tube_n_c1_y;
         o[2*count + k] = tube_n_c1_z;
@@ -11880,7 +11854,7 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         o[3*count + k] = tube_Hk_a_1_x;
         o[4*count + k] = tube_Hk_a_1_y;
         o[5*count + k] = tube_Hk_a_1_z;
-        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        /* (tube-n_c2) unit force of the constraint wrench */
         o[6*count + k] = tube_n_c2_x;
         o[7*count + k] = tube_n_c2_y;
         o[8*count + k] = tube_n_c2_z;
@@ -11898,14 +11872,12 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
             ((tube_Hk_a_1_y + tube_Hk_a_1_z) + (tube_n_c2_x + tube_n_c2_y))) + (((tube_n_c2_z +
             tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) + ((tube_mu_c3_x + tube_mu_c3_y) +
             (tube_mu_c3_z + tube_least_pivots)));
-        o[16*count + k] = UNLESS(magnitude(tube_rho2_1) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
-            TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
-            > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
-            UNLESS(magnitude(tube_w_1_t_63) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_75)
-            > TOLERANCE*R(1.35));
+        o[16*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
+            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
+            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -11913,22 +11885,22 @@ INLINE void condition_place_tube(size_t w, size_t count, const real *o, size_t f
     real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[(0)*w + k] = o[0*count + first + k];
-        Hk[(3)*w + k] = o[1*count + first + k];
-        Hk[(6)*w + k] = o[2*count + first + k];
-        Hk[(9)*w + k] = o[3*count + first + k];
-        Hk[(12)*w + k] = o[4*count + first + k];
-        Hk[(15)*w + k] = o[5*count + first + k];
-        Hk[(1)*w + k] = o[6*count + first + k];
-        Hk[(4)*w + k] = o[7*count + first + k];
-        Hk[(7)*w + k] = o[8*count + first + k];
-        Hk[(10)*w + k] = o[9*count + first + k];
-        Hk[(13)*w + k] = o[10*count + first + k];
-        Hk[(16)*w + k] = o[11*count + first + k];
-        Hk[(11)*w + k] = o[12*count + first + k];
-        Hk[(14)*w + k] = o[13*count + first + k];
-        Hk[(17)*w + k] = o[14*count + first + k];
-        pivots[(3)*w + k] = o[15*count + first + k];
+        Hk[0*NC*w + k] = o[0*count + first + k];
+        Hk[NC*w + k] = o[1*count + first + k];
+        Hk[2*NC*w + k] = o[2*count + first + k];
+        Hk[3*NC*w + k] = o[3*count + first + k];
+        Hk[4*NC*w + k] = o[4*count + first + k];
+        Hk[5*NC*w + k] = o[5*count + first + k];
+        Hk[(0*NC + 1)*w + k] = o[6*count + first + k];
+        Hk[(NC + 1)*w + k] = o[7*count + first + k];
+        Hk[(2*NC + 1)*w + k] = o[8*count + first + k];
+        Hk[(3*NC + 1)*w + k] = o[9*count + first + k];
+        Hk[(4*NC + 1)*w + k] = o[10*count + first + k];
+        Hk[(5*NC + 1)*w + k] = o[11*count + first + k];
+        Hk[(3*NC + 2)*w + k] = o[12*count + first + k];
+        Hk[(4*NC + 2)*w + k] = o[13*count + first + k];
+        Hk[(5*NC + 2)*w + k] = o[14*count + first + k];
+        pivots[3*w + k] = o[15*count + first + k];
         t->singular[k] += o[16*count + first + k];
         t->total[k] += o[17*count + first + k];
     }
@@ -11950,24 +11922,28 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
-    real s[12] = {0}, sums[2] = {0}, terms_ups[1*LEGS(3)] = {0}, o_ups[9*LEGS(3)] = {0},
-        terms_tube[1*LEGS(1)] = {0}, o_tube[18*LEGS(1)] = {0};
-    clear(Hk, 18);
-    clear(reach, 4);
+    real s[12] = {0};
+    real sums[2] = {0};
+    real terms_ups[2*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[9*LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[2*LEGS(LEGS_OF_tube)] = {0};
+    real o_tube[18*LEGS(LEGS_OF_tube)] = {0};
+    clear(Hk, NV*NC);
+    clear(reach, NL);
     condition_before(1, X, s, lengths, t);
-    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_ups, o_ups);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        condition_place_ups(1, LEGS(3), o_ups, leg, leg, H, pivots, t);
+    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
+        condition_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_ups + n*LEGS(3), 3);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    condition_legs_tube(m, 1, 0, 1, s, 0, LEGS(1), 0, terms_tube, o_tube);
-    for (size_t leg = 0; leg < 1; ++leg) {
-        condition_place_tube(1, LEGS(1), o_tube, leg, Hk, pivots, t);
+    condition_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
+    for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
+        condition_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
-        sums[1 + n] = total(terms_tube + n*LEGS(1), 1);
+    for (size_t n = 0; n < 2; ++n) {
+        sums[n] += total(terms_tube + n*LEGS(LEGS_OF_tube), LEGS_OF_tube);
     }
     condition_after(1, sums, lengths, t);
 }
@@ -11978,116 +11954,116 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
-        check(36, 1, M_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(36, M_out);
+        refuse(NV*NV, M_out);
     }
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[7*LANES], M[36*LANES];
+    real X_in[NQ*LANES], M[NV*NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
     suspect(&why, code);
-    deliver(36, M, M_out);
+    deliver(NV*NV, M, M_out);
 }
 
 INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
-        check(6, 1, Z_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, Z_out);
+        refuse(NV, Z_out);
     }
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], Z[6*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
     suspect(&why, code);
-    deliver(6, Z, Z_out);
+    deliver(NV, Z, Z_out);
 }
 
 INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(18, 1, H_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(18, H_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[7*LANES], H[18*LANES];
+    real X_in[NQ*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
     suspect(&why, code);
-    deliver(18, H, H_out);
+    deliver(NV*NU, H, H_out);
 }
 
 INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     Hk_run(m, X, Hk_out, &why);
     if (!is_finite(why.total[0])) {
-        check(18, 1, Hk_out, why.overflow);
+        check(NV*NC, 1, Hk_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(18, Hk_out);
+        refuse(NV*NC, Hk_out);
     }
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
-    real X_in[7*LANES], Hk[18*LANES];
+    real X_in[NQ*LANES], Hk[NV*NC*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     Hk_run_lanes(m, X, Hk, &why);
     suspect(&why, code);
-    deliver(18, Hk, Hk_out);
+    deliver(NV*NC, Hk, Hk_out);
 }
 
 INLINE void constraints_one(const prepared *m, const real *X, real *constraints_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     constraints_run(m, X, constraints_out, &why);
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
@@ -12100,10 +12076,10 @@ INLINE void constraints_one(const prepared *m, const real *X, real *constraints_
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
-    real X_in[7*LANES], constraints[3*LANES];
+    real X_in[NQ*LANES], constraints[3*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     constraints_run_lanes(m, X, constraints, &why);
     suspect(&why, code);
     deliver(3, constraints, constraints_out);
@@ -12114,10 +12090,10 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     constraint_bias_run(m, X, V, constraint_bias_out, &why);
     if (!is_finite(why.total[0])) {
@@ -12132,11 +12108,11 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], constraint_bias[3*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[3*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     constraint_bias_run_lanes(m, X, V, constraint_bias, &why);
     suspect(&why, code);
     deliver(3, constraint_bias, constraint_bias_out);
@@ -12146,26 +12122,26 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
-        check(12, 1, q_out, why.overflow);
+        check(NJ, 1, q_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(12, q_out);
+        refuse(NJ, q_out);
     }
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[7*LANES], q[12*LANES];
+    real X_in[NQ*LANES], q[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
     suspect(&why, code);
-    deliver(12, q, q_out);
+    deliver(NJ, q, q_out);
 }
 
 INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -12173,32 +12149,32 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(12, 1, qd_out, why.overflow);
+        check(NJ, 1, qd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(12, qd_out);
+        refuse(NJ, qd_out);
     }
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], qd[12*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
     suspect(&why, code);
-    deliver(12, qd, qd_out);
+    deliver(NJ, qd, qd_out);
 }
 
 INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
@@ -12206,123 +12182,123 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(12, 1, qdd_out, why.overflow);
+        check(NJ, 1, qdd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(12, qdd_out);
+        refuse(NJ, qdd_out);
     }
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd[12*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    A = side_by_side(6, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
     suspect(&why, code);
-    deliver(12, qdd, qdd_out);
+    deliver(NJ, qdd, qdd_out);
 }
 
 INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real Hk[18] = {0}, constraint_bias[3] = {0};
+    real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     dynamics_run(m, X, V, M_out, Z_out, H_out, Hk, constraint_bias, &why);
     if (!is_finite(why.total[0])) {
-        check(36, 1, M_out, why.overflow);
-        check(6, 1, Z_out, why.overflow);
-        check(18, 1, H_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(36, M_out);
-        refuse(6, Z_out);
-        refuse(18, H_out);
+        refuse(NV*NV, M_out);
+        refuse(NV, Z_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], M[36*LANES], Z[6*LANES], H[18*LANES], Hk[18*LANES],
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES],
         constraint_bias[3*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     suspect(&why, code);
-    deliver(36, M, M_out);
-    deliver(6, Z, Z_out);
-    deliver(18, H, H_out);
+    deliver(NV*NV, M, M_out);
+    deliver(NV, Z, Z_out);
+    deliver(NV*NU, H, H_out);
 }
 
-INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
+INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
+    real *a, const real *b, real *x, real *unsure, real *total)
 {
     for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(2*stride + 0)*w + k];
-        real a01 = a[(2*stride + 1)*w + k];
-        real a02 = a[(2*stride + 2)*w + k];
-        real a03 = a[(2*stride + 3)*w + k];
-        real a04 = a[(2*stride + 4)*w + k];
-        real a05 = a[(2*stride + 5)*w + k];
-        real b0 = b[2*w + k];
-        real a10 = a[(0)*w + k];
-        real a11 = a[(1)*w + k];
-        real a12 = a[(2)*w + k];
-        real a13 = a[(3)*w + k];
-        real a14 = a[(4)*w + k];
-        real a15 = a[(5)*w + k];
-        real b1 = b[0*w + k];
-        real a20 = a[(1*stride + 0)*w + k];
-        real a21 = a[(1*stride + 1)*w + k];
-        real a22 = a[(1*stride + 2)*w + k];
-        real a23 = a[(1*stride + 3)*w + k];
-        real a24 = a[(1*stride + 4)*w + k];
-        real a25 = a[(1*stride + 5)*w + k];
-        real b2 = b[1*w + k];
-        real a30 = a[(4*stride + 0)*w + k];
-        real a31 = a[(4*stride + 1)*w + k];
-        real a32 = a[(4*stride + 2)*w + k];
-        real a33 = a[(4*stride + 3)*w + k];
-        real a34 = a[(4*stride + 4)*w + k];
-        real a35 = a[(4*stride + 5)*w + k];
-        real b3 = b[4*w + k];
-        real a40 = a[(3*stride + 0)*w + k];
-        real a41 = a[(3*stride + 1)*w + k];
-        real a42 = a[(3*stride + 2)*w + k];
-        real a43 = a[(3*stride + 3)*w + k];
-        real a44 = a[(3*stride + 4)*w + k];
-        real a45 = a[(3*stride + 5)*w + k];
-        real b4 = b[3*w + k];
-        real a50 = a[(5*stride + 0)*w + k];
-        real a51 = a[(5*stride + 1)*w + k];
-        real a52 = a[(5*stride + 2)*w + k];
-        real a53 = a[(5*stride + 3)*w + k];
-        real a54 = a[(5*stride + 4)*w + k];
-        real a55 = a[(5*stride + 5)*w + k];
-        real b5 = b[5*w + k];
+        real a00 = a[(order[0]*stride + 0)*w + k];
+        real a01 = a[(order[0]*stride + 1)*w + k];
+        real a02 = a[(order[0]*stride + 2)*w + k];
+        real a03 = a[(order[0]*stride + 3)*w + k];
+        real a04 = a[(order[0]*stride + 4)*w + k];
+        real a05 = a[(order[0]*stride + 5)*w + k];
+        real b0 = b[order[0]*w + k];
+        real a10 = a[(order[1]*stride + 0)*w + k];
+        real a11 = a[(order[1]*stride + 1)*w + k];
+        real a12 = a[(order[1]*stride + 2)*w + k];
+        real a13 = a[(order[1]*stride + 3)*w + k];
+        real a14 = a[(order[1]*stride + 4)*w + k];
+        real a15 = a[(order[1]*stride + 5)*w + k];
+        real b1 = b[order[1]*w + k];
+        real a20 = a[(order[2]*stride + 0)*w + k];
+        real a21 = a[(order[2]*stride + 1)*w + k];
+        real a22 = a[(order[2]*stride + 2)*w + k];
+        real a23 = a[(order[2]*stride + 3)*w + k];
+        real a24 = a[(order[2]*stride + 4)*w + k];
+        real a25 = a[(order[2]*stride + 5)*w + k];
+        real b2 = b[order[2]*w + k];
+        real a30 = a[(order[3]*stride + 0)*w + k];
+        real a31 = a[(order[3]*stride + 1)*w + k];
+        real a32 = a[(order[3]*stride + 2)*w + k];
+        real a33 = a[(order[3]*stride + 3)*w + k];
+        real a34 = a[(order[3]*stride + 4)*w + k];
+        real a35 = a[(order[3]*stride + 5)*w + k];
+        real b3 = b[order[3]*w + k];
+        real a40 = a[(order[4]*stride + 0)*w + k];
+        real a41 = a[(order[4]*stride + 1)*w + k];
+        real a42 = a[(order[4]*stride + 2)*w + k];
+        real a43 = a[(order[4]*stride + 3)*w + k];
+        real a44 = a[(order[4]*stride + 4)*w + k];
+        real a45 = a[(order[4]*stride + 5)*w + k];
+        real b4 = b[order[4]*w + k];
+        real a50 = a[(order[5]*stride + 0)*w + k];
+        real a51 = a[(order[5]*stride + 1)*w + k];
+        real a52 = a[(order[5]*stride + 2)*w + k];
+        real a53 = a[(order[5]*stride + 3)*w + k];
+        real a54 = a[(order[5]*stride + 4)*w + k];
+        real a55 = a[(order[5]*stride + 5)*w + k];
+        real b5 = b[order[5]*w + k];
         const real f0 = 1/a00;
         const real d1 = a00*a11 - a10*a01;
         const real f1 = a00/d1;
@@ -12414,8 +12390,8 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         const real f5 = a44/d5;
         const real g54 = a54*f4;
         b5 -= g54*b4;
-        const real x5 = (b5)*f5;
-        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x5 = b5*f5;
+        const real x4 = b4*f4 - a45*f4*x5;
         const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
         const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
         const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
@@ -12427,241 +12403,257 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         x[4*w + k] = x4;
         x[5*w + k] = x5;
         total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
-        const real most0 = larger(larger(larger(magnitude(g10), larger(magnitude(g20),
-            magnitude(g30))), larger(larger(magnitude(g40), magnitude(g50)),
-            larger(magnitude(g21), magnitude(g31)))), larger(larger(larger(magnitude(g41),
-            magnitude(g51)), larger(magnitude(g32), magnitude(g42))),
-            larger(larger(magnitude(g52), magnitude(g43)), larger(magnitude(g53),
-            magnitude(g54)))));
-        const real most1 = larger(larger(magnitude(f0), larger(magnitude(f1), magnitude(f2))),
-            larger(magnitude(f3), larger(magnitude(f4), magnitude(f5))));
-        unsure[k] += UNLESS(most0 <= R(10)) + UNLESS(most1 <= R(1000)) + UNLESS(is_finite(a00 + d1
-            + a22 + d3 + a44 + d5));
+        const real most0 = larger(larger(magnitude(g10)*(sizes[0]/sizes[1]),
+            magnitude(g20)*(sizes[0]/sizes[2])), larger(magnitude(g30)*(sizes[0]/sizes[3]),
+            larger(magnitude(g40)*(sizes[0]/sizes[4]), magnitude(g50)*(sizes[0]/sizes[5]))));
+        const real most1 = larger(larger(magnitude(g21)*(sizes[1]/sizes[2]),
+            magnitude(g31)*(sizes[1]/sizes[3])), larger(magnitude(g41)*(sizes[1]/sizes[4]),
+            magnitude(g51)*(sizes[1]/sizes[5])));
+        const real most2 = larger(magnitude(g32)*(sizes[2]/sizes[3]),
+            larger(magnitude(g42)*(sizes[2]/sizes[4]), magnitude(g52)*(sizes[2]/sizes[5])));
+        const real most3 = larger(magnitude(g43)*(sizes[3]/sizes[4]),
+            magnitude(g53)*(sizes[3]/sizes[5]));
+        const real most4 = magnitude(g54)*(sizes[4]/sizes[5]);
+        unsure[k] += UNLESS(larger(larger(magnitude(f0)*sizes[0], larger(magnitude(f1)*sizes[1],
+            magnitude(f2)*sizes[2])), larger(magnitude(f3)*sizes[3],
+            larger(magnitude(f4)*sizes[4], magnitude(f5)*sizes[5]))) <= R(1000));
+        unsure[k] += UNLESS(larger(larger(most0, most1), larger(most2, larger(most3, most4))) <=
+            R(10));
+        unsure[k] += UNLESS(is_finite(a00 + d1 + a22 + d3 + a44 + d5));
     }
 }
 
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    real wrench_in[6], required[6] = {0}, H[18] = {0}, Hk[18] = {0}, subtract_2[6] = {0}, beside_3[36]
-        = {0}, solve_4[6] = {0}, unsure_7[1] = {0}, work[48];
+    static const size_t order_solve_1[] = {2, 0, 1, 4, 3, 5};
+    static const real sizes_solve_1[] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
+        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    beside(6, 3, 3, H, Hk, beside_3);
-    eliminate_0(1, 6, beside_3, subtract_2, solve_4, unsure_7, why.total);
-    if (unsure_7[0] > 0) {
-        set_matrix(6, 1, beside_3, work);
-        solve_apart(6, subtract_2, work, solve_4, why.singular);
-        check(6, 1, solve_4, why.overflow);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    eliminate_6(1, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NV, 1, beside_1, work);
+        solve_apart(NV, subtract_1, work, solve_1, why.singular);
+        check(NV, 1, solve_1, why.overflow);
     }
-    const real *const tau = solve_4;
-    const real *const lambda_ = solve_4 + 3;
-    check(3, 1, tau, why.overflow);
-    check(3, 1, lambda_, why.overflow);
+    const real *const tau = solve_1;
+    const real *const lambda_ = solve_1 + NU;
+    check(NU, 1, tau, why.overflow);
+    check(NC, 1, lambda_, why.overflow);
     judge(&why, code);
-    copy(3, tau, tau_out);
-    copy(3, lambda_, lambda_out);
+    copy(NU, tau, tau_out);
+    copy(NC, lambda_, lambda_out);
     if (*code != OK) {
-        refuse(3, tau_out);
-        refuse(3, lambda_out);
+        refuse(NU, tau_out);
+        refuse(NC, lambda_out);
     }
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
-        H[18*LANES], Hk[18*LANES], subtract_2[6*LANES], beside_3[36*LANES] = {0}, solve_4[6*LANES];
+    static const size_t order_solve_1[] = {2, 0, 1, 4, 3, 5};
+    static const real sizes_solve_1[] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
+        H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES], beside_1[NV*NV*LANES] = {0},
+        solve_1[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    A = side_by_side(6, A, A_in, why.total);
-    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6*LANES; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    beside(6, 3*LANES, 3*LANES, H, Hk, beside_3);
-    eliminate_0(LANES, 6, beside_3, subtract_2, solve_4, why.singular, why.total);
-    const real *const tau = solve_4;
-    const real *const lambda_ = solve_4 + 3*LANES;
-    add_up(3, tau, why.total);
-    add_up(3, lambda_, why.total);
+    beside(NV, NU*LANES, NC*LANES, H, Hk, beside_1);
+    eliminate_6(LANES, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, why.singular, why.total);
+    const real *const tau = solve_1;
+    const real *const lambda_ = solve_1 + NU*LANES;
+    add_up(NU, tau, why.total);
+    add_up(NC, lambda_, why.total);
     suspect(&why, code);
-    deliver(3, tau, tau_out);
-    deliver(3, lambda_, lambda_out);
+    deliver(NU, tau, tau_out);
+    deliver(NC, lambda_, lambda_out);
 }
 
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, real *lambda_out, int *code)
 {
-    real wrench_in[6], M[36] = {0}, Z[6] = {0}, H[18] = {0}, Hk[18] = {0}, constraint_bias[3] = {0},
-        times_1[6] = {0}, add_3[6] = {0}, subtract_4[6] = {0}, negative_5[3] = {0}, join_6[9] = {0},
-        solve_8[9] = {0}, work[108];
+    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
+        constraint_bias[3] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
+        negative_1[3] = {0}, join_1[9] = {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV +
+        NC))];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(tau, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(3, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
-    product(6, 3, 1, 1, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 6; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, 1, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 6; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
     for (size_t i = 0; i < 3; ++i) {
-        negative_5[i] = -constraint_bias[i];
+        negative_1[i] = -constraint_bias[i];
     }
-    beside(1, 6, 3, subtract_4, negative_5, join_6);
-    saddle(6, 3, stride_of(9, 1), 1, M, Hk, work);
-    solve_state(9, join_6, work, solve_8, why.singular);
-    const real *const A = solve_8;
-    const real *const lambda_ = solve_8 + 6;
-    check(6, 1, A, why.overflow);
-    check(3, 1, lambda_, why.overflow);
+    beside(1, NV, 3, subtract_1, negative_1, join_1);
+    saddle(NV, NC, stride_of(NV + NC, 1), 1, M, Hk, work);
+    solve_state(NV + NC, join_1, work, solve_1, why.singular);
+    const real *const A = solve_1;
+    const real *const lambda_ = solve_1 + NV;
+    check(NV, 1, A, why.overflow);
+    check(NC, 1, lambda_, why.overflow);
     judge(&why, code);
-    copy(6, A, A_out);
-    copy(3, lambda_, lambda_out);
+    copy(NV, A, A_out);
+    copy(NC, lambda_, lambda_out);
     if (*code != OK) {
-        refuse(6, A_out);
-        refuse(3, lambda_out);
+        refuse(NV, A_out);
+        refuse(NC, lambda_out);
     }
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], tau_in[3*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
-        H[18*LANES], Hk[18*LANES], constraint_bias[3*LANES], times_1[6*LANES] = {0}, add_3[6*LANES],
-        subtract_4[6*LANES], negative_5[3*LANES], join_6[9*LANES] = {0}, solve_8[9*LANES],
-        work[108*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
+        Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[3*LANES], times_1[NV*LANES] =
+        {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[3*LANES], join_1[9*LANES] = {0},
+        solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    tau = side_by_side(3, tau, tau_in, why.total);
-    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
-    product(6, 3, 1, LANES, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 6*LANES; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 6*LANES; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
     for (size_t i = 0; i < 3*LANES; ++i) {
-        negative_5[i] = -constraint_bias[i];
+        negative_1[i] = -constraint_bias[i];
     }
-    beside(1, 6*LANES, 3*LANES, subtract_4, negative_5, join_6);
-    saddle(6, 3, stride_of(9, LANES), LANES, M, Hk, work);
-    solve(9, LANES, join_6, work, solve_8, why.singular);
-    const real *const A = solve_8;
-    const real *const lambda_ = solve_8 + 6*LANES;
-    add_up(6, A, why.total);
-    add_up(3, lambda_, why.total);
+    beside(1, NV*LANES, 3*LANES, subtract_1, negative_1, join_1);
+    saddle(NV, NC, stride_of(NV + NC, LANES), LANES, M, Hk, work);
+    solve(NV + NC, LANES, join_1, work, solve_1, why.singular);
+    const real *const A = solve_1;
+    const real *const lambda_ = solve_1 + NV*LANES;
+    add_up(NV, A, why.total);
+    add_up(NC, lambda_, why.total);
     suspect(&why, code);
-    deliver(6, A, A_out);
-    deliver(3, lambda_, lambda_out);
+    deliver(NV, A, A_out);
+    deliver(NC, lambda_, lambda_out);
 }
 
 INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(6, 1, A, why.invalid);
+    check(NV, 1, A, why.invalid);
     const real *const completed = A;
-    check(6, 1, completed, why.overflow);
+    check(NV, 1, completed, why.overflow);
     judge(&why, code);
-    copy(6, completed, completed_out);
+    copy(NV, completed, completed_out);
     if (*code != OK) {
-        refuse(6, completed_out);
+        refuse(NV, completed_out);
     }
 }
 
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2};
-    static const size_t places_1[] = {3, 3, 3};
-    real wrench_in[6], required[6] = {0}, H[18] = {0}, Hk[18] = {0}, subtract_2[6] = {0}, beside_3[36]
-        = {0}, solve_4[6] = {0}, unsure_7[1] = {0}, leg_force[24] = {0}, drive[18] = {0},
-        constraint_direction[18] = {0}, add_forces_7[24] = {0}, forces[24] = {0}, work[48];
+    static const size_t order_solve_1[] = {2, 0, 1, 4, 3, 5};
+    static const real sizes_solve_1[] = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+    static const size_t places_add_forces_1[] = {0, 1, 2};
+    static const size_t places_forces[] = {3, 3, 3};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
+        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0},
+        actuator[18] = {0}, constraint_direction[6*NC] = {0}, add_forces_1[6*NL] = {0}, forces[6*NL] =
+        {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    beside(6, 3, 3, H, Hk, beside_3);
-    eliminate_0(1, 6, beside_3, subtract_2, solve_4, unsure_7, why.total);
-    if (unsure_7[0] > 0) {
-        set_matrix(6, 1, beside_3, work);
-        solve_apart(6, subtract_2, work, solve_4, why.singular);
-        check(6, 1, solve_4, why.overflow);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    eliminate_6(1, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NV, 1, beside_1, work);
+        solve_apart(NV, subtract_1, work, solve_1, why.singular);
+        check(NV, 1, solve_1, why.overflow);
     }
-    const real *const split_5 = solve_4;
-    const real *const split_6 = solve_4 + 3;
-    legs_run(m, X, V, A, leg_force, drive, constraint_direction, &why);
-    for (size_t i = 0; i < 24; ++i) {
-        add_forces_7[i] = leg_force[i];
+    const real *const split_1 = solve_1;
+    const real *const split_2 = solve_1 + 3;
+    legs_run(m, X, V, A, leg_force, actuator, constraint_direction, &why);
+    for (size_t i = 0; i < 6*NL; ++i) {
+        add_forces_1[i] = leg_force[i];
     }
-    add_forces(3, 6, 1, places_0, split_5, drive, add_forces_7);
-    for (size_t i = 0; i < 24; ++i) {
-        forces[i] = add_forces_7[i];
+    add_forces(3, 6, 1, places_add_forces_1, split_1, actuator, add_forces_1);
+    for (size_t i = 0; i < 6*NL; ++i) {
+        forces[i] = add_forces_1[i];
     }
-    add_forces(3, 6, 1, places_1, split_6, constraint_direction, forces);
-    check(24, 1, forces, why.overflow);
+    add_forces(NC, 6, 1, places_forces, split_2, constraint_direction, forces);
+    check(6*NL, 1, forces, why.overflow);
     judge(&why, code);
-    copy(24, forces, forces_out);
+    copy(6*NL, forces, forces_out);
     if (*code != OK) {
-        refuse(24, forces_out);
+        refuse(6*NL, forces_out);
     }
 }
 
 INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
-    real M[36] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
-    half_form(6, 1, V, M, kinetic);
+    half_form(NV, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
@@ -12677,12 +12669,12 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
 INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
-    static const size_t places_0[] = {3, 4, 5};
-    real length_in[1], H[18] = {0}, Hk[18] = {0}, lengths[2] = {0}, legs[4] = {0}, reach[4] = {0},
-        choose_length_1[1] = {0}, divide_rows_2[18] = {0}, sigma[3] = {0};
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
+        {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
@@ -12690,82 +12682,82 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 18; ++i) {
-        divide_rows_2[i] = H[i];
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
     }
-    divide_rows(3, 3, 1, places_0, choose_length_1, divide_rows_2);
-    singular_values(6, 3, divide_rows_2, sigma);
+    divide_rows(NU, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(4, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(3, 1, sigma, why.overflow);
+    check(NU, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(3, sigma, sigma_out);
-    copy(4, legs, legs_out);
+    copy(NU, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(3, sigma_out);
-        refuse(4, legs_out);
+        refuse(NU, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 INLINE void condition_constrained_one(const prepared *m, const real *X, const real *length, real
     *sigma_out, real *legs_out, int *code)
 {
-    static const size_t places_0[] = {3, 4, 5};
-    real length_in[1], H[18] = {0}, Hk[18] = {0}, lengths[2] = {0}, legs[4] = {0}, reach[4] = {0},
-        beside_1[36] = {0}, choose_length_2[1] = {0}, divide_rows_3[36] = {0}, sigma[6] = {0};
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
+        {0}, beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] =
+        {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
-    beside(6, 3, 3, H, Hk, beside_1);
+    beside(NV, NU, NC, H, Hk, beside_1);
     for (size_t i = 0; i < 1; ++i) {
-        choose_length_2[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
+        choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 36; ++i) {
-        divide_rows_3[i] = beside_1[i];
+    for (size_t i = 0; i < NV*NV; ++i) {
+        divide_rows_1[i] = beside_1[i];
     }
-    divide_rows(3, 6, 1, places_0, choose_length_2, divide_rows_3);
-    singular_values(6, 6, divide_rows_3, sigma);
+    divide_rows(3, NV, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NV, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(4, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(6, 1, sigma, why.overflow);
+    check(NV, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(6, sigma, sigma_out);
-    copy(4, legs, legs_out);
+    copy(NV, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(6, sigma_out);
-        refuse(4, legs_out);
+        refuse(NV, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real q[12] = {0}, take_1[3] = {0}, subtract_2[3] = {0}, constraints[3] = {0}, negative_3[3] = {0},
-        gap[6] = {0};
+    real q[NJ] = {0}, take_1[3] = {0}, subtract_1[NU] = {0}, constraints[3] = {0}, negative_1[3] =
+        {0}, gap[6] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(q_actuated, 3);
+    const real total_in = total(X, NQ) + total(q_actuated, NU);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(3, 1, q_actuated, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(3, 1, places_0, q, take_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_2[i] = q_actuated[i] - take_1[i];
+    take(3, 1, tricept_ACTUATED, q, take_1);
+    for (size_t i = 0; i < NU; ++i) {
+        subtract_1[i] = q_actuated[i] - take_1[i];
     }
     constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 3; ++i) {
-        negative_3[i] = -constraints[i];
+        negative_1[i] = -constraints[i];
     }
-    beside(1, 3, 3, subtract_2, negative_3, gap);
+    beside(1, NU, 3, subtract_1, negative_1, gap);
     check(6, 1, gap, why.overflow);
     judge(&why, code);
     copy(6, gap, gap_out);
@@ -12776,27 +12768,27 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
 
 static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real H[18] = {0}, Hk[18] = {0}, slope[36] = {0};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H, &why);
     Hk_run(m, X, Hk, &why);
-    beside(6, 3, 3, H, Hk, slope);
-    check(36, 1, slope, why.overflow);
+    beside(NV, NU, NC, H, Hk, slope);
+    check(NV*NV, 1, slope, why.overflow);
     judge(&why, code);
-    copy(36, slope, slope_out);
+    copy(NV*NV, slope, slope_out);
     if (*code != OK) {
-        refuse(36, slope_out);
+        refuse(NV*NV, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
-    enum { N = 6, NV = 6, TRIALS = 12 };
+    enum { N = 6, TRIALS = 12 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[7] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     mismatch_one(m, found, q_actuated, gap, &code);
@@ -12839,38 +12831,38 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
-    real X[7] = {0};
+    real X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(q_actuated, 3) + total(X0, 7);
+    const real total_in = total(q_actuated, NU) + total(X0, NQ);
     if (!is_finite(total_in)) {
-        check(3, 1, q_actuated, why.invalid);
-        check(7, 1, X0, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
+        check(NQ, 1, X0, why.invalid);
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(7, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, int *code)
 {
-    real constraints[3] = {0}, gap[3] = {0};
+    real constraints[3] = {0}, gap[NC] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     constraints_run(m, X, constraints, &why);
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NC; ++i) {
         gap[i] = -constraints[i];
     }
-    check(3, 1, gap, why.overflow);
+    check(NC, 1, gap, why.overflow);
     judge(&why, code);
-    copy(3, gap, gap_out);
+    copy(NC, gap, gap_out);
     if (*code != OK) {
-        refuse(3, gap_out);
+        refuse(NC, gap_out);
     }
 }
 
@@ -12878,23 +12870,23 @@ static void constraint_slope_one(const prepared *m, const real *X, real *slope_o
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     Hk_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
-        check(18, 1, slope_out, why.overflow);
+        check(NV*NC, 1, slope_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(18, slope_out);
+        refuse(NV*NC, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_constraint_gap(const prepared *m, const real *start, real *found)
 {
-    enum { N = 3, NV = 6, TRIALS = 1 };
+    enum { N = NC, TRIALS = 1 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[7] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     constraint_gap_one(m, found, gap, &code);
@@ -12936,26 +12928,26 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 
 INLINE void project_one(const prepared *m, const real *X, real *projected_out, int *code)
 {
-    real projected[7] = {0};
+    real projected[NQ] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     blame(search_constraint_gap(m, X, projected), &why);
-    check(7, 1, projected, why.overflow);
+    check(NQ, 1, projected, why.overflow);
     judge(&why, code);
-    copy(7, projected, projected_out);
+    copy(NQ, projected, projected_out);
     if (*code != OK) {
-        refuse(7, projected_out);
+        refuse(NQ, projected_out);
     }
 }
 
 INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
-    real subtract_1[6] = {0};
+    real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
-    check(6, 1, V, why.invalid);
-    for (size_t i = 0; i < 6; ++i) {
+    check(NV, 1, V, why.invalid);
+    for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
@@ -12970,85 +12962,85 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
     *code)
 {
-    real M[36] = {0}, momentum[6] = {0};
+    real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
-    product(6, 6, 1, 1, M, V, momentum);
-    check(6, 1, momentum, why.overflow);
+    product(NV, NV, 1, 1, M, V, momentum);
+    check(NV, 1, momentum, why.overflow);
     judge(&why, code);
-    copy(6, momentum, momentum_out);
+    copy(NV, momentum, momentum_out);
     if (*code != OK) {
-        refuse(6, momentum_out);
+        refuse(NV, momentum_out);
     }
 }
 
 INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
     int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], M[36*LANES], momentum[6*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     M_run_lanes(m, X, M, &why);
-    product(6, 6, 1, LANES, M, V, momentum);
-    add_up(6, momentum, why.total);
+    product(NV, NV, 1, LANES, M, V, momentum);
+    add_up(NV, momentum, why.total);
     suspect(&why, code);
-    deliver(6, momentum, momentum_out);
+    deliver(NV, momentum, momentum_out);
 }
 
 INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
-    real q[12] = {0}, margins[12] = {0};
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+    real q[NJ] = {0}, margins[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 12; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
-    unlimited(12, 12, 1, places_0, margins, why.overflow);
+    unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     judge(&why, code);
-    copy(12, margins, margins_out);
+    copy(NJ, margins, margins_out);
     if (*code != OK) {
-        refuse(12, margins_out);
+        refuse(NJ, margins_out);
     }
 }
 
 INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
-    real X_in[7*LANES], q[12*LANES], margins[12*LANES];
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 12*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         margins[i] = q[i];
     }
-    unlimited(12, 12, LANES, places_0, margins, why.invalid);
+    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
     suspect(&why, code);
-    deliver(12, margins, margins_out);
+    deliver(NJ, margins, margins_out);
 }
 
 INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real q[12] = {0}, subtract_1[12] = {0}, within[1] = {0};
+    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 12; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(12, 1, subtract_1, within, why.overflow);
+    not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     judge(&why, code);
     copy(1, within, within_out);
@@ -13059,15 +13051,15 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
 
 INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real X_in[7*LANES], q[12*LANES], subtract_1[12*LANES], within[1*LANES] = {0};
+    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 12*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(12, LANES, subtract_1, within, why.invalid);
+    not_negative(NJ, LANES, subtract_1, within, why.invalid);
     add_up(1, within, why.total);
     suspect(&why, code);
     deliver(1, within, within_out);
@@ -13075,129 +13067,123 @@ INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_o
 
 INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real q_of_inverse_kinematics[12] = {0}, q[3] = {0};
+    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
-    take(3, 1, places_0, q_of_inverse_kinematics, q);
-    check(3, 1, q, why.overflow);
+    take(NU, 1, tricept_ACTUATED, q_of_inverse_kinematics, q);
+    check(NU, 1, q, why.overflow);
     judge(&why, code);
-    copy(3, q, q_out);
+    copy(NU, q, q_out);
     if (*code != OK) {
-        refuse(3, q_out);
+        refuse(NU, q_out);
     }
 }
 
 INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real X_in[7*LANES], q_of_inverse_kinematics[12*LANES], q[3*LANES] = {0};
+    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(3, 1*LANES, places_0, q_of_inverse_kinematics, q);
-    add_up(3, q, why.total);
+    take(NU, LANES, tricept_ACTUATED, q_of_inverse_kinematics, q);
+    add_up(NU, q, why.total);
     suspect(&why, code);
-    deliver(3, q, q_out);
+    deliver(NU, q, q_out);
 }
 
 INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real qd_of_joint_rates[12] = {0}, qd[3] = {0};
+    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
-    take(3, 1, places_0, qd_of_joint_rates, qd);
-    check(3, 1, qd, why.overflow);
+    take(NU, 1, tricept_ACTUATED, qd_of_joint_rates, qd);
+    check(NU, 1, qd, why.overflow);
     judge(&why, code);
-    copy(3, qd, qd_out);
+    copy(NU, qd, qd_out);
     if (*code != OK) {
-        refuse(3, qd_out);
+        refuse(NU, qd_out);
     }
 }
 
 INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
     int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real X_in[7*LANES], V_in[6*LANES], qd_of_joint_rates[12*LANES], qd[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(3, 1*LANES, places_0, qd_of_joint_rates, qd);
-    add_up(3, qd, why.total);
+    take(NU, LANES, tricept_ACTUATED, qd_of_joint_rates, qd);
+    add_up(NU, qd, why.total);
     suspect(&why, code);
-    deliver(3, qd, qd_out);
+    deliver(NU, qd, qd_out);
 }
 
 INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real qdd_of_joint_accelerations[12] = {0}, qdd[3] = {0};
+    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1, places_0, qdd_of_joint_accelerations, qdd);
-    check(3, 1, qdd, why.overflow);
+    take(NU, 1, tricept_ACTUATED, qdd_of_joint_accelerations, qdd);
+    check(NU, 1, qdd, why.overflow);
     judge(&why, code);
-    copy(3, qdd, qdd_out);
+    copy(NU, qdd, qdd_out);
     if (*code != OK) {
-        refuse(3, qdd_out);
+        refuse(NU, qdd_out);
     }
 }
 
 INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {2, 5, 8};
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of_joint_accelerations[12*LANES],
-        qdd[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
+        qdd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    A = side_by_side(6, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
-    add_up(3, qdd, why.total);
+    take(NU, LANES, tricept_ACTUATED, qdd_of_joint_accelerations, qdd);
+    add_up(NU, qdd, why.total);
     suspect(&why, code);
-    deliver(3, qdd, qdd_out);
+    deliver(NU, qdd, qdd_out);
 }
 
 INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real H[18] = {0}, times_1[6] = {0}, power[1] = {0};
+    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(tau, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(3, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
     H_run(m, X, H, &why);
-    product(6, 3, 1, 1, H, tau, times_1);
-    inner(6, 1, times_1, V, power);
+    product(NV, NU, 1, 1, H, tau, times_1);
+    inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     judge(&why, code);
     copy(1, power, power_out);
@@ -13209,16 +13195,16 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
 INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], tau_in[3*LANES], H[18*LANES], times_1[6*LANES] = {0},
-        power[1*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        power[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    tau = side_by_side(3, tau, tau_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
     H_run_lanes(m, X, H, &why);
-    product(6, 3, 1, LANES, H, tau, times_1);
-    inner(6, LANES, times_1, V, power);
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    inner(NV, LANES, times_1, V, power);
     add_up(1, power, why.total);
     suspect(&why, code);
     deliver(1, power, power_out);
@@ -13229,7 +13215,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     real R[9] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     const real *const take_1 = X + 3;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
@@ -13242,7 +13228,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
 
 INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 3) + total(R, 9);
@@ -13251,42 +13237,42 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
         check(9, 1, R, why.invalid);
     }
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
-    const real *const X = join_2;
-    check(7, 1, X, why.overflow);
+    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
+    const real *const X = join_1;
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
-    real quaternion_rate_3[4] = {0}, X_dot[7] = {0};
+    real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     const real *const take_1 = V + 3;
     const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_3);
-    const real *const take_4 = V;
-    beside(1, 3, 4, take_4, quaternion_rate_3, X_dot);
-    check(7, 1, X_dot, why.overflow);
+    quaternion_rate(take_2, take_1, quaternion_rate_1);
+    const real *const take_3 = V;
+    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
-    copy(7, X_dot, X_dot_out);
+    copy(NQ, X_dot, X_dot_out);
     if (*code != OK) {
-        refuse(7, X_dot_out);
+        refuse(NQ, X_dot_out);
     }
 }
 
 INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 3) + total(rpy, 3);
@@ -13295,108 +13281,108 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
         check(3, 1, rpy, why.invalid);
     }
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
-    const real *const X = join_2;
-    check(7, 1, X, why.overflow);
+    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
+    const real *const X = join_1;
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
-    real turn_quaternion_5[4] = {0}, add_6[3] = {0}, X_moved[7] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(step, 6);
+    const real total_in = total(X, NQ) + total(step, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, step, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, step, why.invalid);
     }
     const real *const take_1 = X;
     const real *const take_2 = X + 3;
     const real *const take_3 = step;
     const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_5);
+    turn_quaternion(take_2, take_4, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_6[i] = take_1[i] + take_3[i];
+        add_1[i] = take_1[i] + take_3[i];
     }
-    beside(1, 3, 4, add_6, turn_quaternion_5, X_moved);
-    check(7, 1, X_moved, why.overflow);
+    beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
+    check(NQ, 1, X_moved, why.overflow);
     judge(&why, code);
-    copy(7, X_moved, X_moved_out);
+    copy(NQ, X_moved, X_moved_out);
     if (*code != OK) {
-        refuse(7, X_moved_out);
+        refuse(NQ, X_moved_out);
     }
 }
 
 INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
-    real turn_between_5[3] = {0}, subtract_6[3] = {0}, step[6] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 7) + total(X1, 7);
+    const real total_in = total(X0, NQ) + total(X1, NQ);
     if (!is_finite(total_in)) {
-        check(7, 1, X0, why.invalid);
-        check(7, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
     }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
     const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_5);
+    turn_between(take_2, take_4, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_6[i] = take_3[i] - take_1[i];
+        subtract_1[i] = take_3[i] - take_1[i];
     }
-    beside(1, 3, 3, subtract_6, turn_between_5, step);
-    check(6, 1, step, why.overflow);
+    beside(1, 3, 3, subtract_1, turn_between_1, step);
+    check(NV, 1, step, why.overflow);
     judge(&why, code);
-    copy(6, step, step_out);
+    copy(NV, step, step_out);
     if (*code != OK) {
-        refuse(6, step_out);
+        refuse(NV, step_out);
     }
 }
 
 INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    real turn_between_5[3] = {0}, subtract_6[3] = {0}, join_7[6] = {0}, scale_8[6] = {0},
-        turn_quaternion_13[4] = {0}, add_14[3] = {0}, X[7] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
+        turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 7) + total(X1, 7) + total(s, 1);
+    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
     if (!is_finite(total_in)) {
-        check(7, 1, X0, why.invalid);
-        check(7, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
     const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_5);
+    turn_between(take_2, take_4, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_6[i] = take_3[i] - take_1[i];
+        subtract_1[i] = take_3[i] - take_1[i];
     }
-    beside(1, 3, 3, subtract_6, turn_between_5, join_7);
+    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
-        scale_8[i] = join_7[i]*s[i%(1)];
+        scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_9 = X0;
-    const real *const take_10 = X0 + 3;
-    const real *const take_11 = scale_8;
-    const real *const take_12 = scale_8 + 3;
-    turn_quaternion(take_10, take_12, turn_quaternion_13);
+    const real *const take_5 = X0;
+    const real *const take_6 = X0 + 3;
+    const real *const take_7 = scale_1;
+    const real *const take_8 = scale_1 + 3;
+    turn_quaternion(take_6, take_8, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_14[i] = take_9[i] + take_11[i];
+        add_1[i] = take_5[i] + take_7[i];
     }
-    beside(1, 3, 4, add_14, turn_quaternion_13, X);
-    check(7, 1, X, why.overflow);
+    beside(1, 3, 4, add_1, turn_quaternion_1, X);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -13415,16 +13401,16 @@ size_t tricept_M_batch(const tricept_model *model, size_t n, const tricept_real 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_lanes(model, X + 7*i, M + 36*i, codes);
+        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_M(model, X + 7*(i + k), M + 36*(i + k));
+                codes[k] = tricept_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_M(model, X + 7*i, M + 36*i);
+        const int code = tricept_M(model, X + NQ*i, M + NV*NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13444,16 +13430,16 @@ size_t tricept_Z_batch(const tricept_model *model, size_t n, const tricept_real 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_lanes(model, X + 7*i, V + 6*i, Z + 6*i, codes);
+        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
+                codes[k] = tricept_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_Z(model, X + 7*i, V + 6*i, Z + 6*i);
+        const int code = tricept_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13472,16 +13458,16 @@ size_t tricept_H_batch(const tricept_model *model, size_t n, const tricept_real 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_lanes(model, X + 7*i, H + 18*i, codes);
+        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_H(model, X + 7*(i + k), H + 18*(i + k));
+                codes[k] = tricept_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_H(model, X + 7*i, H + 18*i);
+        const int code = tricept_H(model, X + NQ*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13500,16 +13486,16 @@ size_t tricept_Hk_batch(const tricept_model *model, size_t n, const tricept_real
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Hk_lanes(model, X + 7*i, Hk + 18*i, codes);
+        Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_Hk(model, X + 7*(i + k), Hk + 18*(i + k));
+                codes[k] = tricept_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_Hk(model, X + 7*i, Hk + 18*i);
+        const int code = tricept_Hk(model, X + NQ*i, Hk + NV*NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13528,16 +13514,16 @@ size_t tricept_constraints_batch(const tricept_model *model, size_t n, const tri
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraints_lanes(model, X + 7*i, residual + 3*i, codes);
+        constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_constraints(model, X + 7*(i + k), residual + 3*(i + k));
+                codes[k] = tricept_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_constraints(model, X + 7*i, residual + 3*i);
+        const int code = tricept_constraints(model, X + NQ*i, residual + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13557,16 +13543,16 @@ size_t tricept_constraint_bias_batch(const tricept_model *model, size_t n, const
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraint_bias_lanes(model, X + 7*i, V + 6*i, bias + 3*i, codes);
+        constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_constraint_bias(model, X + 7*(i + k), V + 6*(i + k), bias + 3*(i + k));
+                codes[k] = tricept_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_constraint_bias(model, X + 7*i, V + 6*i, bias + 3*i);
+        const int code = tricept_constraint_bias(model, X + NQ*i, V + NV*i, bias + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13585,16 +13571,16 @@ size_t tricept_inverse_kinematics_batch(const tricept_model *model, size_t n, co
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_lanes(model, X + 7*i, q + 12*i, codes);
+        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_inverse_kinematics(model, X + 7*(i + k), q + 12*(i + k));
+                codes[k] = tricept_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_inverse_kinematics(model, X + 7*i, q + 12*i);
+        const int code = tricept_inverse_kinematics(model, X + NQ*i, q + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13614,16 +13600,16 @@ size_t tricept_joint_rates_batch(const tricept_model *model, size_t n, const tri
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_lanes(model, X + 7*i, V + 6*i, rates + 12*i, codes);
+        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 12*(i + k));
+                codes[k] = tricept_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_joint_rates(model, X + 7*i, V + 6*i, rates + 12*i);
+        const int code = tricept_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13643,18 +13629,18 @@ size_t tricept_joint_accelerations_batch(const tricept_model *model, size_t n, c
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 12*i, codes);
+        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
-                    accelerations + 12*(i + k));
+                codes[k] = tricept_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    accelerations + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_joint_accelerations(model, X + 7*i, V + 6*i, A + 6*i, accelerations +
-            12*i);
+        const int code = tricept_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i, accelerations +
+            NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13674,17 +13660,17 @@ size_t tricept_dynamics_batch(const tricept_model *model, size_t n, const tricep
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_lanes(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 18*i, codes);
+        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i + k), H
-                    + 18*(i + k));
+                codes[k] = tricept_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z + NV*(i +
+                    k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_dynamics(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 18*i);
+        const int code = tricept_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13706,19 +13692,19 @@ size_t tricept_inverse_dynamics_batch(const tricept_model *model, size_t n, cons
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_lanes(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau + 3*i,
-            lambda + 3*i, codes);
+        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+            NU*i, lambda + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k), wrench ?
-                    wrench + 6*(i + k) : NULL, tau + 3*(i + k), lambda + 3*(i + k));
+                codes[k] = tricept_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k), wrench
+                    ? wrench + NW*(i + k) : NULL, tau + NU*(i + k), lambda + NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_inverse_dynamics(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i
-            : NULL, tau + 3*i, lambda + 3*i);
+        const int code = tricept_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
+            NW*i : NULL, tau + NU*i, lambda + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13740,19 +13726,19 @@ size_t tricept_forward_dynamics_batch(const tricept_model *model, size_t n, cons
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_lanes(model, X + 7*i, V + 6*i, tau + 3*i, wrench ? wrench + 6*i : NULL, A + 6*i,
-            lambda + 3*i, codes);
+        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+            NV*i, lambda + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 3*(i + k), wrench ?
-                    wrench + 6*(i + k) : NULL, A + 6*(i + k), lambda + 3*(i + k));
+                codes[k] = tricept_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
+                    wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_forward_dynamics(model, X + 7*i, V + 6*i, tau + 3*i, wrench ? wrench +
-            6*i : NULL, A + 6*i, lambda + 3*i);
+        const int code = tricept_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench +
+            NW*i : NULL, A + NV*i, lambda + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13776,8 +13762,8 @@ size_t tricept_complete_acceleration_batch(const tricept_model *model, size_t n,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench +
-            6*i : NULL, completed + 6*i);
+        const int code = tricept_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
+            wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13797,8 +13783,8 @@ size_t tricept_leg_reactions_batch(const tricept_model *model, size_t n, const t
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_leg_reactions(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i :
-            NULL, forces + 24*i);
+        const int code = tricept_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i
+            : NULL, forces + 24*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13817,7 +13803,7 @@ size_t tricept_energy_batch(const tricept_model *model, size_t n, const tricept_
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_energy(model, X + 7*i, V + 6*i, kinetic + 1*i, potential + 1*i);
+        const int code = tricept_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13836,7 +13822,7 @@ size_t tricept_condition_batch(const tricept_model *model, size_t n, const trice
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_condition(model, X + 7*i, sigma + 3*i, legs + 4*i);
+        const int code = tricept_condition(model, X + NQ*i, sigma + 3*i, legs + 4*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13855,7 +13841,7 @@ size_t tricept_condition_constrained_batch(const tricept_model *model, size_t n,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_condition_constrained(model, X + 7*i, sigma + 6*i, legs + 4*i);
+        const int code = tricept_condition_constrained(model, X + NQ*i, sigma + 6*i, legs + 4*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13874,7 +13860,7 @@ size_t tricept_forward_kinematics_batch(const tricept_model *model, size_t n, co
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_forward_kinematics(model, q_actuated + 3*i, X0 + 7*i, X + 7*i);
+        const int code = tricept_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13892,7 +13878,7 @@ size_t tricept_project_batch(const tricept_model *model, size_t n, const tricept
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_project(model, X + 7*i, projected + 7*i);
+        const int code = tricept_project(model, X + NQ*i, projected + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13913,7 +13899,7 @@ size_t tricept_dissipation_batch(const tricept_model *model, size_t n, const tri
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_dissipation(model, X + 7*i, V + 6*i, dissipation + 1*i);
+        const int code = tricept_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13933,16 +13919,16 @@ size_t tricept_momentum_batch(const tricept_model *model, size_t n, const tricep
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_lanes(model, X + 7*i, V + 6*i, momentum + 6*i, codes);
+        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_momentum(model, X + 7*(i + k), V + 6*(i + k), momentum + 6*(i + k));
+                codes[k] = tricept_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_momentum(model, X + 7*i, V + 6*i, momentum + 6*i);
+        const int code = tricept_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13962,16 +13948,16 @@ size_t tricept_joint_margins_batch(const tricept_model *model, size_t n, const t
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_margins_lanes(model, X + 7*i, margins + 12*i, codes);
+        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_joint_margins(model, X + 7*(i + k), margins + 12*(i + k));
+                codes[k] = tricept_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_joint_margins(model, X + 7*i, margins + 12*i);
+        const int code = tricept_joint_margins(model, X + NQ*i, margins + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -13990,16 +13976,16 @@ size_t tricept_within_limits_batch(const tricept_model *model, size_t n, const t
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        within_limits_lanes(model, X + 7*i, within + 1*i, codes);
+        within_limits_lanes(model, X + NQ*i, within + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_within_limits(model, X + 7*(i + k), within + 1*(i + k));
+                codes[k] = tricept_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_within_limits(model, X + 7*i, within + 1*i);
+        const int code = tricept_within_limits(model, X + NQ*i, within + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -14018,16 +14004,16 @@ size_t tricept_actuator_positions_batch(const tricept_model *model, size_t n, co
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_lanes(model, X + 7*i, q + 3*i, codes);
+        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_actuator_positions(model, X + 7*(i + k), q + 3*(i + k));
+                codes[k] = tricept_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_actuator_positions(model, X + 7*i, q + 3*i);
+        const int code = tricept_actuator_positions(model, X + NQ*i, q + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -14047,16 +14033,16 @@ size_t tricept_actuator_rates_batch(const tricept_model *model, size_t n, const 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_lanes(model, X + 7*i, V + 6*i, rates + 3*i, codes);
+        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_actuator_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 3*(i + k));
+                codes[k] = tricept_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_actuator_rates(model, X + 7*i, V + 6*i, rates + 3*i);
+        const int code = tricept_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -14077,18 +14063,18 @@ size_t tricept_actuator_accelerations_batch(const tricept_model *model, size_t n
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 3*i, codes);
+        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_actuator_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
-                    accelerations + 3*(i + k));
+                codes[k] = tricept_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    accelerations + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_actuator_accelerations(model, X + 7*i, V + 6*i, A + 6*i, accelerations +
-            3*i);
+        const int code = tricept_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i, accelerations
+            + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -14108,16 +14094,17 @@ size_t tricept_power_batch(const tricept_model *model, size_t n, const tricept_r
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_lanes(model, X + 7*i, V + 6*i, tau + 3*i, power + 1*i, codes);
+        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tricept_power(model, X + 7*(i + k), V + 6*(i + k), tau + 3*(i + k), power + 1*(i + k));
+                codes[k] = tricept_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
+                    k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tricept_power(model, X + 7*i, V + 6*i, tau + 3*i, power + 1*i);
+        const int code = tricept_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -14134,7 +14121,7 @@ size_t tricept_rotation_batch(size_t n, const tricept_real *X, tricept_real *R, 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_rotation(X + 7*i, R + 9*i);
+        const int code = tricept_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -14152,7 +14139,7 @@ size_t tricept_pose_batch(size_t n, const tricept_real *t, const tricept_real *R
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_pose(t + 3*i, R + 9*i, X + 7*i);
+        const int code = tricept_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -14170,7 +14157,7 @@ size_t tricept_X_dot_batch(size_t n, const tricept_real *X, const tricept_real *
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_X_dot(X + 7*i, V + 6*i, X_dot + 7*i);
+        const int code = tricept_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -14188,7 +14175,7 @@ size_t tricept_pose_from_rpy_batch(size_t n, const tricept_real *t, const tricep
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_pose_from_rpy(t + 3*i, rpy + 3*i, X + 7*i);
+        const int code = tricept_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -14206,7 +14193,7 @@ size_t tricept_retract_batch(size_t n, const tricept_real *X, const tricept_real
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_retract(X + 7*i, step + 6*i, X_moved + 7*i);
+        const int code = tricept_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -14224,7 +14211,7 @@ size_t tricept_difference_batch(size_t n, const tricept_real *X0, const tricept_
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_difference(X0 + 7*i, X1 + 7*i, step + 6*i);
+        const int code = tricept_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -14243,7 +14230,7 @@ size_t tricept_interpolate_batch(size_t n, const tricept_real *X0, const tricept
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tricept_interpolate(X0 + 7*i, X1 + 7*i, s + 1*i, X + 7*i);
+        const int code = tricept_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -54,6 +54,18 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+#define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
+
+/* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
+#define NQ ((size_t)TRIPOD_3PRS_NQ)
+#define NV ((size_t)TRIPOD_3PRS_NV)
+#define NU ((size_t)TRIPOD_3PRS_NU)
+#define NC ((size_t)TRIPOD_3PRS_NC)
+#define NW ((size_t)TRIPOD_3PRS_NW)
+#define NJ ((size_t)TRIPOD_3PRS_NJ)
+#define NL ((size_t)3)
+#define LEGS_OF_prs ((size_t)3)
+
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
@@ -114,6 +126,12 @@ INLINE void clear(real *x, size_t n)
     for (size_t i = 0; i < n; ++i) {
         x[i] = 0;
     }
+}
+
+/* What a leg adds to a sum, or gives alone. */
+INLINE void gather(real *sum, int add, real term)
+{
+    *sum = add ? *sum + term : term;
 }
 
 INLINE int is_finite(real x)
@@ -441,23 +459,23 @@ static int acceptable(const tripod_3prs_params *p)
     ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_within(&p->platform_inertia[0][0], 9);
     ok &= all_inertias(&p->platform_inertia[0][0], 1);
-    ok &= all_within(&p->prs_base_point[0][0], 9);
-    ok &= all_within(&p->prs_base_frame[0][0][0], 27);
-    ok &= all_rotations(&p->prs_base_frame[0][0][0], 3);
-    ok &= all_within(&p->prs_platform_point[0][0], 9);
-    ok &= all_within(&p->prs_platform_joint_offset[0][0], 9);
-    ok &= all_zero(&p->prs_platform_joint_offset[0][0] + 1, 3, 3);
-    ok &= all_zero(&p->prs_platform_joint_offset[0][0] + 2, 3, 3);
-    ok &= all_within(&p->prs_link1_mass[0], 3);
-    ok &= none_negative(&p->prs_link1_mass[0], 3);
-    ok &= all_within(&p->prs_link1_centre_of_mass[0][0], 9);
-    ok &= all_within(&p->prs_link1_inertia[0][0][0], 27);
-    ok &= all_inertias(&p->prs_link1_inertia[0][0][0], 3);
-    ok &= all_within(&p->prs_link2_mass[0], 3);
-    ok &= none_negative(&p->prs_link2_mass[0], 3);
-    ok &= all_within(&p->prs_link2_centre_of_mass[0][0], 9);
-    ok &= all_within(&p->prs_link2_inertia[0][0][0], 27);
-    ok &= all_inertias(&p->prs_link2_inertia[0][0][0], 3);
+    ok &= all_within(&p->prs_base_point[0][0], 3*LEGS_OF_prs);
+    ok &= all_within(&p->prs_base_frame[0][0][0], 9*LEGS_OF_prs);
+    ok &= all_rotations(&p->prs_base_frame[0][0][0], LEGS_OF_prs);
+    ok &= all_within(&p->prs_platform_point[0][0], 3*LEGS_OF_prs);
+    ok &= all_within(&p->prs_platform_joint_offset[0][0], 3*LEGS_OF_prs);
+    ok &= all_zero(&p->prs_platform_joint_offset[0][0] + 1, LEGS_OF_prs, 3);
+    ok &= all_zero(&p->prs_platform_joint_offset[0][0] + 2, LEGS_OF_prs, 3);
+    ok &= all_within(&p->prs_link1_mass[0], LEGS_OF_prs);
+    ok &= none_negative(&p->prs_link1_mass[0], LEGS_OF_prs);
+    ok &= all_within(&p->prs_link1_centre_of_mass[0][0], 3*LEGS_OF_prs);
+    ok &= all_within(&p->prs_link1_inertia[0][0][0], 9*LEGS_OF_prs);
+    ok &= all_inertias(&p->prs_link1_inertia[0][0][0], LEGS_OF_prs);
+    ok &= all_within(&p->prs_link2_mass[0], LEGS_OF_prs);
+    ok &= none_negative(&p->prs_link2_mass[0], LEGS_OF_prs);
+    ok &= all_within(&p->prs_link2_centre_of_mass[0][0], 3*LEGS_OF_prs);
+    ok &= all_within(&p->prs_link2_inertia[0][0][0], 9*LEGS_OF_prs);
+    ok &= all_inertias(&p->prs_link2_inertia[0][0][0], LEGS_OF_prs);
     return ok;
 }
 
@@ -534,8 +552,8 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     model->h_star_in_platform_z = h_star_in_platform_z;
     model->platform_mass = platform_mass;
     model->spread_t = spread_t;
-    for (size_t leg = 0; leg < 4; ++leg) {
-        const size_t own = leg < 3 ? leg : 0;
+    for (size_t leg = 0; leg < FILLED(LEGS_OF_prs); ++leg) {
+        const size_t own = leg < LEGS_OF_prs ? leg : 0;
         const real prs_base_point_x = params->prs_base_point[own][0];
         const real prs_base_point_y = params->prs_base_point[own][1];
         const real prs_base_point_z = params->prs_base_point[own][2];
@@ -590,7 +608,7 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         /* (prs-P_c_1) force that accelerates joint 1, per unit */
         const real prs_P_c_1_in_axes0_x = prs_link1_mass + prs_link2_mass;
         /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real inv_prs_root_2_t = 1/prs_root_2_t;
         const real inv_prs_size = 1/prs_size;
         /* (potential) potential energy */
@@ -642,10 +660,10 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         model->prs_root_2_t[leg] = prs_root_2_t;
         model->prs_size[leg] = prs_size;
         model->prs_size_t[leg] = prs_size_t;
-        b_c_prs_in_platform_x += leg < 3 ? prs_platform_point_x : 0;
-        b_c_prs_in_platform_y += leg < 3 ? prs_platform_point_y : 0;
-        b_c_prs_in_platform_z += leg < 3 ? prs_platform_point_z : 0;
-        legs_size_prs += leg < 3 ? prs_size_t_2 : 0;
+        b_c_prs_in_platform_x += leg < LEGS_OF_prs ? prs_platform_point_x : 0;
+        b_c_prs_in_platform_y += leg < LEGS_OF_prs ? prs_platform_point_y : 0;
+        b_c_prs_in_platform_z += leg < LEGS_OF_prs ? prs_platform_point_z : 0;
+        legs_size_prs += leg < LEGS_OF_prs ? prs_size_t_2 : 0;
     }
     /* (b_c) centroid of the platform points */
     const real b_c_in_platform_x = R(0.3333333333333333)*b_c_prs_in_platform_x;
@@ -820,9 +838,10 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 }
 
 /* Length of the rows of a system of n equations, whose right side stands in column n. */
+#define PADDED(n) (((n) + 4)/4*4)
 INLINE size_t stride_of(size_t n, size_t w)
 {
-    return w == 1 ? (n + 4)/4*4 : n + 1;
+    return w == 1 ? PADDED(n) : n + 1;
 }
 
 INLINE void set_matrix(size_t n, size_t w, const real *a, real *rows)
@@ -1286,7 +1305,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 {
     enum { Q = 3 };
     const real turn[3] = {part*step[Q], part*step[Q + 1], part*step[Q + 2]};
-    for (size_t i = 0; i < 6; ++i) {
+    for (size_t i = 0; i < NV; ++i) {
         const size_t e = i + (i > Q + 2);
         to[e] = X[e] + part*step[i];
     }
@@ -1295,7 +1314,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 738 mul, 540 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s,
     verdict *t)
 {
@@ -1640,7 +1659,7 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
         const real prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*prs_s_2 -
             prs_c_2*prs_d_Gamma_1_t;
         /* (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real prs_d_G_in_axes2_xx = prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_x -
             prs_d_Gamma_2_in_axes2_x*prs_w_2_t;
         const real prs_d_G_in_axes2_xy = prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_x -
@@ -1650,7 +1669,7 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
         const real prs_d_G_in_axes2_yy = prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_y +
             prs_d_Gamma_2_in_axes2_y*prs_w_2_in_axes2_y;
         /* (prs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real prs_G_o_t = inv_prs_v_2_t*(prs_mu_2_o_in_axes2_z +
             prs_T_1_o_in_axes0_x*prs_d_3_in_axes0_y);
         const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2;
@@ -1714,37 +1733,37 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
         const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
         const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + prs_d_c_xx : prs_d_c_xx;  /* M_tt_t */
-        terms[1*count + k] = add ? terms[1*count + k] + prs_d_c_xy : prs_d_c_xy;  /* M_tt_t_2 */
-        terms[2*count + k] = add ? terms[2*count + k] + prs_d_c_xz : prs_d_c_xz;  /* M_tt_t_3 */
-        terms[3*count + k] = add ? terms[3*count + k] + prs_d_c_yy : prs_d_c_yy;  /* M_tt_t_4 */
-        terms[4*count + k] = add ? terms[4*count + k] + prs_d_c_yz : prs_d_c_yz;  /* M_tt_t_5 */
-        terms[5*count + k] = add ? terms[5*count + k] + prs_d_c_zz : prs_d_c_zz;  /* M_tt_t_6 */
+        gather(&terms[0*count + k], add, prs_d_c_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, prs_d_c_xy);  /* M_tt_t_2 */
+        gather(&terms[2*count + k], add, prs_d_c_xz);  /* M_tt_t_3 */
+        gather(&terms[3*count + k], add, prs_d_c_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, prs_d_c_yz);  /* M_tt_t_5 */
+        gather(&terms[5*count + k], add, prs_d_c_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + prs_M_ta_t_3 : prs_M_ta_t_3;  /* M_ta_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + -prs_M_ta_t_4 : -prs_M_ta_t_4;  /* M_ta_prs_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + prs_M_ta_t_5 : prs_M_ta_t_5;  /* M_ta_prs_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + prs_M_ta_t_6 : prs_M_ta_t_6;  /* M_ta_prs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + prs_M_ta_t_8 : prs_M_ta_t_8;  /* M_ta_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + prs_M_ta_t_9 : prs_M_ta_t_9;  /* M_ta_prs_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + prs_M_ta_t_10 : prs_M_ta_t_10;  /* M_ta_prs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + prs_M_ta_t_11 : prs_M_ta_t_11;  /* M_ta_prs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + prs_M_ta_t_12 : prs_M_ta_t_12;  /* M_ta_zz */
+        gather(&terms[6*count + k], add, prs_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, -prs_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, prs_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, prs_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, prs_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, prs_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, prs_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, prs_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, prs_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + prs_M_aa_t : prs_M_aa_t;  /* M_aa_prs_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + prs_M_aa_t_2 : prs_M_aa_t_2;  /* M_aa_prs_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + prs_M_aa_t_3 : prs_M_aa_t_3;  /* M_aa_prs_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + prs_M_aa_t_4 : prs_M_aa_t_4;  /* M_aa_t */
-        terms[19*count + k] = add ? terms[19*count + k] + prs_M_aa_t_5 : prs_M_aa_t_5;  /* M_aa_prs_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + prs_M_aa_t_6 : prs_M_aa_t_6;  /* M_aa_prs_zz */
+        gather(&terms[15*count + k], add, prs_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, prs_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, prs_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, prs_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, prs_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, prs_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        terms[21*count + k] = add ? terms[21*count + k] + prs_U_x : prs_U_x;  /* Z_t_prs_x */
-        terms[22*count + k] = add ? terms[22*count + k] + prs_U_y : prs_U_y;  /* Z_t_prs_y */
-        terms[23*count + k] = add ? terms[23*count + k] + prs_U_z : prs_U_z;  /* Z_t_prs_z */
+        gather(&terms[21*count + k], add, prs_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[22*count + k], add, prs_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[23*count + k], add, prs_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[24*count + k] = add ? terms[24*count + k] + prs_Z_a_t : prs_Z_a_t;  /* Z_a_prs_x */
-        terms[25*count + k] = add ? terms[25*count + k] + prs_Z_a_t_2 : prs_Z_a_t_2;  /* Z_a_prs_y */
-        terms[26*count + k] = add ? terms[26*count + k] + prs_Z_a_t_3 : prs_Z_a_t_3;  /* Z_a_prs_z */
+        gather(&terms[24*count + k], add, prs_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[25*count + k], add, prs_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[26*count + k], add, prs_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (prs-w_1) reciprocal vector 1 */
         o[0*count + k] = prs_w_1_x;
         o[1*count + k] = prs_w_1_y;
@@ -1779,19 +1798,19 @@ INLINE void dynamics_place_prs(size_t w, size_t count, const real *o, size_t leg
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        H[(9 + leg)*w + k] = o[3*count + first + k];
-        H[(12 + leg)*w + k] = o[4*count + first + k];
-        H[(15 + leg)*w + k] = o[5*count + first + k];
-        Hk[(leg)*w + k] = o[6*count + first + k];
-        Hk[(3 + leg)*w + k] = o[7*count + first + k];
-        Hk[(6 + leg)*w + k] = o[8*count + first + k];
-        Hk[(9 + leg)*w + k] = o[9*count + first + k];
-        Hk[(12 + leg)*w + k] = o[10*count + first + k];
-        Hk[(15 + leg)*w + k] = o[11*count + first + k];
-        constraint_bias[(leg)*w + k] = o[12*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + leg)*w + k] = o[5*count + first + k];
+        Hk[(0*NC + leg)*w + k] = o[6*count + first + k];
+        Hk[(NC + leg)*w + k] = o[7*count + first + k];
+        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
+        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
+        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
+        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
+        constraint_bias[leg*w + k] = o[12*count + first + k];
         t->unreachable[k] += o[13*count + first + k];
         t->singular[k] += o[14*count + first + k];
         t->total[k] += o[15*count + first + k];
@@ -1803,113 +1822,113 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_t = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real platform_mass = m->platform_mass;
-        const real M_tt_xx = platform_mass - M_tt_t;
-        const real M_tt_t_4 = sums[3*w + k];
-        const real M_tt_yy = platform_mass - M_tt_t_4;
-        const real M_tt_t_6 = sums[5*w + k];
-        const real M_tt_zz = platform_mass - M_tt_t_6;
+        const real M_tt_xx = platform_mass - M_tt_xx_of_legs;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = platform_mass - M_tt_yy_of_legs;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = platform_mass - M_tt_zz_of_legs;
         /* (M_ta) coupling block of M */
-        const real M_ta_prs_xy = sums[7*w + k];
+        const real M_ta_xy_of_legs = sums[7*w + k];
         const real h_star_z = s[20*w + k];
-        const real M_ta_xy = M_ta_prs_xy + h_star_z;
-        const real M_ta_prs_xz = sums[8*w + k];
+        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+        const real M_ta_xz_of_legs = sums[8*w + k];
         const real h_star_y = s[19*w + k];
-        const real M_ta_xz = M_ta_prs_xz - h_star_y;
-        const real M_ta_prs_yx = sums[9*w + k];
-        const real M_ta_yx = M_ta_prs_yx - h_star_z;
-        const real M_ta_prs_yz = sums[11*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yx_of_legs = sums[9*w + k];
+        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+        const real M_ta_yz_of_legs = sums[11*w + k];
         const real h_star_x = s[18*w + k];
-        const real M_ta_yz = M_ta_prs_yz + h_star_x;
-        const real M_ta_prs_zx = sums[12*w + k];
-        const real M_ta_zx = M_ta_prs_zx + h_star_y;
-        const real M_ta_prs_zy = sums[13*w + k];
-        const real M_ta_zy = M_ta_prs_zy - h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+        const real M_ta_zx_of_legs = sums[12*w + k];
+        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+        const real M_ta_zy_of_legs = sums[13*w + k];
+        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[21*w + k];
-        const real M_aa_prs_xx = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_prs_xx;
+        const real M_aa_xx_of_legs = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[22*w + k];
-        const real M_aa_prs_xy = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_prs_xy;
+        const real M_aa_xy_of_legs = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[23*w + k];
-        const real M_aa_prs_xz = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_prs_xz;
+        const real M_aa_xz_of_legs = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
         const real J_star_yy = s[24*w + k];
-        const real M_aa_t = sums[18*w + k];
-        const real M_aa_yy = J_star_yy - M_aa_t;
+        const real M_aa_yy_of_legs = sums[18*w + k];
+        const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
         const real J_star_yz = s[25*w + k];
-        const real M_aa_prs_yz = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_prs_yz;
+        const real M_aa_yz_of_legs = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[26*w + k];
-        const real M_aa_prs_zz = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_prs_zz;
+        const real M_aa_zz_of_legs = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real Z_t_prs_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + Z_t_prs_x;
+        const real Z_t_x_of_legs = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[28*w + k];
-        const real Z_t_prs_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + Z_t_prs_y;
+        const real Z_t_y_of_legs = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = s[29*w + k];
-        const real Z_t_prs_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + Z_t_prs_z;
+        const real Z_t_z_of_legs = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_prs_x = sums[24*w + k];
+        const real Z_a_x_of_legs = sums[24*w + k];
         const real Z_q_x = s[30*w + k];
-        const real Z_a_x = Z_a_prs_x + Z_q_x;
-        const real Z_a_prs_y = sums[25*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[25*w + k];
         const real Z_q_y = s[31*w + k];
-        const real Z_a_y = Z_a_prs_y + Z_q_y;
-        const real Z_a_prs_z = sums[26*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[26*w + k];
         const real Z_q_z = s[32*w + k];
-        const real Z_a_z = Z_a_prs_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
+        M[0*NV*w + k] = M_tt_xx;
         const real M_tt_t_2 = sums[1*w + k];
-        M[1*w + k] = -M_tt_t_2;
-        M[6*w + k] = -M_tt_t_2;
+        M[(0*NV + 1)*w + k] = -M_tt_t_2;
+        M[NV*w + k] = -M_tt_t_2;
         const real M_tt_t_3 = sums[2*w + k];
-        M[2*w + k] = -M_tt_t_3;
-        M[12*w + k] = -M_tt_t_3;
-        M[7*w + k] = M_tt_yy;
+        M[(0*NV + 2)*w + k] = -M_tt_t_3;
+        M[2*NV*w + k] = -M_tt_t_3;
+        M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_t_5 = sums[4*w + k];
-        M[8*w + k] = -M_tt_t_5;
-        M[13*w + k] = -M_tt_t_5;
-        M[14*w + k] = M_tt_zz;
+        M[(NV + 2)*w + k] = -M_tt_t_5;
+        M[(2*NV + 1)*w + k] = -M_tt_t_5;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[18*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[24*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[30*w + k] = M_ta_xz;
-        M[9*w + k] = M_ta_yx;
-        M[19*w + k] = M_ta_yx;
+        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*NV*w + k] = M_ta_xx;
+        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*NV*w + k] = M_ta_xy;
+        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*NV*w + k] = M_ta_xz;
+        M[(NV + 3)*w + k] = M_ta_yx;
+        M[(3*NV + 1)*w + k] = M_ta_yx;
         const real M_ta_yy = sums[10*w + k];
-        M[10*w + k] = M_ta_yy;
-        M[25*w + k] = M_ta_yy;
-        M[11*w + k] = M_ta_yz;
-        M[31*w + k] = M_ta_yz;
-        M[15*w + k] = M_ta_zx;
-        M[20*w + k] = M_ta_zx;
-        M[16*w + k] = M_ta_zy;
-        M[26*w + k] = M_ta_zy;
+        M[(NV + 4)*w + k] = M_ta_yy;
+        M[(4*NV + 1)*w + k] = M_ta_yy;
+        M[(NV + 5)*w + k] = M_ta_yz;
+        M[(5*NV + 1)*w + k] = M_ta_yz;
+        M[(2*NV + 3)*w + k] = M_ta_zx;
+        M[(3*NV + 2)*w + k] = M_ta_zx;
+        M[(2*NV + 4)*w + k] = M_ta_zy;
+        M[(4*NV + 2)*w + k] = M_ta_zy;
         const real M_ta_zz = sums[14*w + k];
-        M[17*w + k] = M_ta_zz;
-        M[32*w + k] = M_ta_zz;
+        M[(2*NV + 5)*w + k] = M_ta_zz;
+        M[(5*NV + 2)*w + k] = M_ta_zz;
         /* (M_aa) rotational block of M */
-        M[21*w + k] = M_aa_xx;
-        M[22*w + k] = M_aa_xy;
-        M[27*w + k] = M_aa_xy;
-        M[23*w + k] = M_aa_xz;
-        M[33*w + k] = M_aa_xz;
-        M[28*w + k] = M_aa_yy;
-        M[29*w + k] = M_aa_yz;
-        M[34*w + k] = M_aa_yz;
-        M[35*w + k] = M_aa_zz;
+        M[(3*NV + 3)*w + k] = M_aa_xx;
+        M[(3*NV + 4)*w + k] = M_aa_xy;
+        M[(4*NV + 3)*w + k] = M_aa_xy;
+        M[(3*NV + 5)*w + k] = M_aa_xz;
+        M[(5*NV + 3)*w + k] = M_aa_xz;
+        M[(4*NV + 4)*w + k] = M_aa_yy;
+        M[(4*NV + 5)*w + k] = M_aa_yz;
+        M[(5*NV + 4)*w + k] = M_aa_yz;
+        M[(5*NV + 5)*w + k] = M_aa_zz;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -1928,14 +1947,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[33] = {0}, sums[27] = {0}, terms_prs[27*LEGS(3)] = {0}, o_prs[16*LEGS(3)] = {0};
+    real s[33] = {0};
+    real sums[27] = {0};
+    real terms_prs[27*LEGS(LEGS_OF_prs)] = {0};
+    real o_prs[16*LEGS(LEGS_OF_prs)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        dynamics_place_prs(1, LEGS(3), o_prs, leg, leg, H, Hk, constraint_bias, t);
+    dynamics_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        dynamics_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, Hk, constraint_bias, t);
     }
     for (size_t n = 0; n < 27; ++n) {
-        sums[n] = total(terms_prs + n*LEGS(3), 3);
+        sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
     dynamics_after(m, 1, s, sums, M, Z, t);
 }
@@ -1943,17 +1965,19 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[33*LANES], sums[27*LANES], o_prs[16*LANES];
+    real s[33*LANES];
+    real sums[27*LANES];
+    real o_prs[16*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         dynamics_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
         dynamics_place_prs(LANES, LANES, o_prs, leg, 0, H, Hk, constraint_bias, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
 }
 
-/* ---- M: 414 mul, 318 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- M ---- */
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2155,7 +2179,7 @@ INLINE void M_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*prs_s_2 -
             prs_c_2*prs_d_Gamma_1_t;
         /* (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
+           leg's inertia and weight along all degrees of freedom */
         const real prs_d_G_in_axes2_xx = prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_x -
             prs_d_Gamma_2_in_axes2_x*prs_w_2_t;
         const real prs_d_G_in_axes2_xy = prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_x -
@@ -2210,29 +2234,29 @@ INLINE void M_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real prs_M_aa_t_5 = prs_M_ta_t_5*prs_q_z - prs_M_ta_t_12*prs_q_x;
         const real prs_M_aa_t_6 = prs_M_ta_t_9*prs_q_x - prs_M_ta_t_5*prs_q_y;
         /* (M_tt) translational block of M */
-        terms[0*count + k] = add ? terms[0*count + k] + prs_d_c_xx : prs_d_c_xx;  /* M_tt_t */
-        terms[1*count + k] = add ? terms[1*count + k] + prs_d_c_xy : prs_d_c_xy;  /* M_tt_t_2 */
-        terms[2*count + k] = add ? terms[2*count + k] + prs_d_c_xz : prs_d_c_xz;  /* M_tt_t_3 */
-        terms[3*count + k] = add ? terms[3*count + k] + prs_d_c_yy : prs_d_c_yy;  /* M_tt_t_4 */
-        terms[4*count + k] = add ? terms[4*count + k] + prs_d_c_yz : prs_d_c_yz;  /* M_tt_t_5 */
-        terms[5*count + k] = add ? terms[5*count + k] + prs_d_c_zz : prs_d_c_zz;  /* M_tt_t_6 */
+        gather(&terms[0*count + k], add, prs_d_c_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, prs_d_c_xy);  /* M_tt_t_2 */
+        gather(&terms[2*count + k], add, prs_d_c_xz);  /* M_tt_t_3 */
+        gather(&terms[3*count + k], add, prs_d_c_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, prs_d_c_yz);  /* M_tt_t_5 */
+        gather(&terms[5*count + k], add, prs_d_c_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        terms[6*count + k] = add ? terms[6*count + k] + prs_M_ta_t_3 : prs_M_ta_t_3;  /* M_ta_xx */
-        terms[7*count + k] = add ? terms[7*count + k] + -prs_M_ta_t_4 : -prs_M_ta_t_4;  /* M_ta_prs_xy */
-        terms[8*count + k] = add ? terms[8*count + k] + prs_M_ta_t_5 : prs_M_ta_t_5;  /* M_ta_prs_xz */
-        terms[9*count + k] = add ? terms[9*count + k] + prs_M_ta_t_6 : prs_M_ta_t_6;  /* M_ta_prs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + prs_M_ta_t_8 : prs_M_ta_t_8;  /* M_ta_yy */
-        terms[11*count + k] = add ? terms[11*count + k] + prs_M_ta_t_9 : prs_M_ta_t_9;  /* M_ta_prs_yz */
-        terms[12*count + k] = add ? terms[12*count + k] + prs_M_ta_t_10 : prs_M_ta_t_10;  /* M_ta_prs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + prs_M_ta_t_11 : prs_M_ta_t_11;  /* M_ta_prs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + prs_M_ta_t_12 : prs_M_ta_t_12;  /* M_ta_zz */
+        gather(&terms[6*count + k], add, prs_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, -prs_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, prs_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, prs_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, prs_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, prs_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, prs_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, prs_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, prs_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        terms[15*count + k] = add ? terms[15*count + k] + prs_M_aa_t : prs_M_aa_t;  /* M_aa_prs_xx */
-        terms[16*count + k] = add ? terms[16*count + k] + prs_M_aa_t_2 : prs_M_aa_t_2;  /* M_aa_prs_xy */
-        terms[17*count + k] = add ? terms[17*count + k] + prs_M_aa_t_3 : prs_M_aa_t_3;  /* M_aa_prs_xz */
-        terms[18*count + k] = add ? terms[18*count + k] + prs_M_aa_t_4 : prs_M_aa_t_4;  /* M_aa_t */
-        terms[19*count + k] = add ? terms[19*count + k] + prs_M_aa_t_5 : prs_M_aa_t_5;  /* M_aa_prs_yz */
-        terms[20*count + k] = add ? terms[20*count + k] + prs_M_aa_t_6 : prs_M_aa_t_6;  /* M_aa_prs_zz */
+        gather(&terms[15*count + k], add, prs_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, prs_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, prs_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, prs_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, prs_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, prs_M_aa_t_6);  /* M_aa_zz_of_legs */
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
         o[0*count + k] = UNLESS(prs_disc_1 >= 0);
@@ -2254,93 +2278,93 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
-        const real M_tt_t = sums[0*w + k];
+        const real M_tt_xx_of_legs = sums[0*w + k];
         const real platform_mass = m->platform_mass;
-        const real M_tt_xx = platform_mass - M_tt_t;
-        const real M_tt_t_4 = sums[3*w + k];
-        const real M_tt_yy = platform_mass - M_tt_t_4;
-        const real M_tt_t_6 = sums[5*w + k];
-        const real M_tt_zz = platform_mass - M_tt_t_6;
+        const real M_tt_xx = platform_mass - M_tt_xx_of_legs;
+        const real M_tt_yy_of_legs = sums[3*w + k];
+        const real M_tt_yy = platform_mass - M_tt_yy_of_legs;
+        const real M_tt_zz_of_legs = sums[5*w + k];
+        const real M_tt_zz = platform_mass - M_tt_zz_of_legs;
         /* (M_ta) coupling block of M */
-        const real M_ta_prs_xy = sums[7*w + k];
+        const real M_ta_xy_of_legs = sums[7*w + k];
         const real h_star_z = s[14*w + k];
-        const real M_ta_xy = M_ta_prs_xy + h_star_z;
-        const real M_ta_prs_xz = sums[8*w + k];
+        const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
+        const real M_ta_xz_of_legs = sums[8*w + k];
         const real h_star_y = s[13*w + k];
-        const real M_ta_xz = M_ta_prs_xz - h_star_y;
-        const real M_ta_prs_yx = sums[9*w + k];
-        const real M_ta_yx = M_ta_prs_yx - h_star_z;
-        const real M_ta_prs_yz = sums[11*w + k];
+        const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
+        const real M_ta_yx_of_legs = sums[9*w + k];
+        const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+        const real M_ta_yz_of_legs = sums[11*w + k];
         const real h_star_x = s[12*w + k];
-        const real M_ta_yz = M_ta_prs_yz + h_star_x;
-        const real M_ta_prs_zx = sums[12*w + k];
-        const real M_ta_zx = M_ta_prs_zx + h_star_y;
-        const real M_ta_prs_zy = sums[13*w + k];
-        const real M_ta_zy = M_ta_prs_zy - h_star_x;
+        const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
+        const real M_ta_zx_of_legs = sums[12*w + k];
+        const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
+        const real M_ta_zy_of_legs = sums[13*w + k];
+        const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_xx = s[15*w + k];
-        const real M_aa_prs_xx = sums[15*w + k];
-        const real M_aa_xx = J_star_xx + M_aa_prs_xx;
+        const real M_aa_xx_of_legs = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
         const real J_star_xy = s[16*w + k];
-        const real M_aa_prs_xy = sums[16*w + k];
-        const real M_aa_xy = J_star_xy + M_aa_prs_xy;
+        const real M_aa_xy_of_legs = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
         const real J_star_xz = s[17*w + k];
-        const real M_aa_prs_xz = sums[17*w + k];
-        const real M_aa_xz = J_star_xz + M_aa_prs_xz;
+        const real M_aa_xz_of_legs = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
         const real J_star_yy = s[18*w + k];
-        const real M_aa_t = sums[18*w + k];
-        const real M_aa_yy = J_star_yy - M_aa_t;
+        const real M_aa_yy_of_legs = sums[18*w + k];
+        const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
         const real J_star_yz = s[19*w + k];
-        const real M_aa_prs_yz = sums[19*w + k];
-        const real M_aa_yz = J_star_yz + M_aa_prs_yz;
+        const real M_aa_yz_of_legs = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
         const real J_star_zz = s[20*w + k];
-        const real M_aa_prs_zz = sums[20*w + k];
-        const real M_aa_zz = J_star_zz + M_aa_prs_zz;
+        const real M_aa_zz_of_legs = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*w + k] = M_tt_xx;
+        M[0*NV*w + k] = M_tt_xx;
         const real M_tt_t_2 = sums[1*w + k];
-        M[1*w + k] = -M_tt_t_2;
-        M[6*w + k] = -M_tt_t_2;
+        M[(0*NV + 1)*w + k] = -M_tt_t_2;
+        M[NV*w + k] = -M_tt_t_2;
         const real M_tt_t_3 = sums[2*w + k];
-        M[2*w + k] = -M_tt_t_3;
-        M[12*w + k] = -M_tt_t_3;
-        M[7*w + k] = M_tt_yy;
+        M[(0*NV + 2)*w + k] = -M_tt_t_3;
+        M[2*NV*w + k] = -M_tt_t_3;
+        M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_t_5 = sums[4*w + k];
-        M[8*w + k] = -M_tt_t_5;
-        M[13*w + k] = -M_tt_t_5;
-        M[14*w + k] = M_tt_zz;
+        M[(NV + 2)*w + k] = -M_tt_t_5;
+        M[(2*NV + 1)*w + k] = -M_tt_t_5;
+        M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[3*w + k] = M_ta_xx;
-        M[18*w + k] = M_ta_xx;
-        M[4*w + k] = M_ta_xy;
-        M[24*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[30*w + k] = M_ta_xz;
-        M[9*w + k] = M_ta_yx;
-        M[19*w + k] = M_ta_yx;
+        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*NV*w + k] = M_ta_xx;
+        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*NV*w + k] = M_ta_xy;
+        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*NV*w + k] = M_ta_xz;
+        M[(NV + 3)*w + k] = M_ta_yx;
+        M[(3*NV + 1)*w + k] = M_ta_yx;
         const real M_ta_yy = sums[10*w + k];
-        M[10*w + k] = M_ta_yy;
-        M[25*w + k] = M_ta_yy;
-        M[11*w + k] = M_ta_yz;
-        M[31*w + k] = M_ta_yz;
-        M[15*w + k] = M_ta_zx;
-        M[20*w + k] = M_ta_zx;
-        M[16*w + k] = M_ta_zy;
-        M[26*w + k] = M_ta_zy;
+        M[(NV + 4)*w + k] = M_ta_yy;
+        M[(4*NV + 1)*w + k] = M_ta_yy;
+        M[(NV + 5)*w + k] = M_ta_yz;
+        M[(5*NV + 1)*w + k] = M_ta_yz;
+        M[(2*NV + 3)*w + k] = M_ta_zx;
+        M[(3*NV + 2)*w + k] = M_ta_zx;
+        M[(2*NV + 4)*w + k] = M_ta_zy;
+        M[(4*NV + 2)*w + k] = M_ta_zy;
         const real M_ta_zz = sums[14*w + k];
-        M[17*w + k] = M_ta_zz;
-        M[32*w + k] = M_ta_zz;
+        M[(2*NV + 5)*w + k] = M_ta_zz;
+        M[(5*NV + 2)*w + k] = M_ta_zz;
         /* (M_aa) rotational block of M */
-        M[21*w + k] = M_aa_xx;
-        M[22*w + k] = M_aa_xy;
-        M[27*w + k] = M_aa_xy;
-        M[23*w + k] = M_aa_xz;
-        M[33*w + k] = M_aa_xz;
-        M[28*w + k] = M_aa_yy;
-        M[29*w + k] = M_aa_yz;
-        M[34*w + k] = M_aa_yz;
-        M[35*w + k] = M_aa_zz;
+        M[(3*NV + 3)*w + k] = M_aa_xx;
+        M[(3*NV + 4)*w + k] = M_aa_xy;
+        M[(4*NV + 3)*w + k] = M_aa_xy;
+        M[(3*NV + 5)*w + k] = M_aa_xz;
+        M[(5*NV + 3)*w + k] = M_aa_xz;
+        M[(4*NV + 4)*w + k] = M_aa_yy;
+        M[(4*NV + 5)*w + k] = M_aa_yz;
+        M[(5*NV + 4)*w + k] = M_aa_yz;
+        M[(5*NV + 5)*w + k] = M_aa_zz;
         t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_t_3 + (M_tt_yy + M_tt_t_5))) + ((M_tt_zz +
             M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
             (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
@@ -2350,31 +2374,36 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0}, sums[21] = {0}, terms_prs[21*LEGS(3)] = {0}, o_prs[2*LEGS(3)] = {0};
+    real s[21] = {0};
+    real sums[21] = {0};
+    real terms_prs[21*LEGS(LEGS_OF_prs)] = {0};
+    real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        M_place_prs(1, LEGS(3), o_prs, leg, t);
+    M_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        M_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, t);
     }
     for (size_t n = 0; n < 21; ++n) {
-        sums[n] = total(terms_prs + n*LEGS(3), 3);
+        sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
     M_after(m, 1, s, sums, M, t);
 }
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES], sums[21*LANES], o_prs[2*LANES];
+    real s[21*LANES];
+    real sums[21*LANES];
+    real o_prs[2*LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         M_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
         M_place_prs(LANES, LANES, o_prs, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
 }
 
-/* ---- Z: 405 mul, 285 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z ---- */
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s, verdict
     *t)
 {
@@ -2651,7 +2680,7 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*prs_link1_mass +
             prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*prs_s_2;
         /* (prs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
+           the leg's inertia and weight along all degrees of freedom */
         const real prs_G_o_t = inv_prs_v_2_t*(prs_mu_2_o_in_axes2_z +
             prs_T_1_o_in_axes0_x*prs_d_3_in_axes0_y);
         const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2;
@@ -2668,13 +2697,13 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real prs_Z_a_t_2 = prs_U_x*prs_q_z - prs_U_z*prs_q_x;
         const real prs_Z_a_t_3 = prs_U_y*prs_q_x - prs_U_x*prs_q_y;
         /* (Z_t) translational part of Z */
-        terms[0*count + k] = add ? terms[0*count + k] + prs_U_x : prs_U_x;  /* Z_t_prs_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prs_U_y : prs_U_y;  /* Z_t_prs_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prs_U_z : prs_U_z;  /* Z_t_prs_z */
+        gather(&terms[0*count + k], add, prs_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, prs_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, prs_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        terms[3*count + k] = add ? terms[3*count + k] + prs_Z_a_t : prs_Z_a_t;  /* Z_a_prs_x */
-        terms[4*count + k] = add ? terms[4*count + k] + prs_Z_a_t_2 : prs_Z_a_t_2;  /* Z_a_prs_y */
-        terms[5*count + k] = add ? terms[5*count + k] + prs_Z_a_t_3 : prs_Z_a_t_3;  /* Z_a_prs_z */
+        gather(&terms[3*count + k], add, prs_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[4*count + k], add, prs_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[5*count + k], add, prs_Z_a_t_3);  /* Z_a_z_of_legs */
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
         o[0*count + k] = UNLESS(prs_disc_1 >= 0);
@@ -2696,24 +2725,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real Z_t_prs_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + Z_t_prs_x;
+        const real Z_t_x_of_legs = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_x_of_legs;
         const real Z_p_y = s[19*w + k];
-        const real Z_t_prs_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + Z_t_prs_y;
+        const real Z_t_y_of_legs = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         const real Z_p_z = s[20*w + k];
-        const real Z_t_prs_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + Z_t_prs_z;
+        const real Z_t_z_of_legs = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
-        const real Z_a_prs_x = sums[3*w + k];
+        const real Z_a_x_of_legs = sums[3*w + k];
         const real Z_q_x = s[21*w + k];
-        const real Z_a_x = Z_a_prs_x + Z_q_x;
-        const real Z_a_prs_y = sums[4*w + k];
+        const real Z_a_x = Z_a_x_of_legs + Z_q_x;
+        const real Z_a_y_of_legs = sums[4*w + k];
         const real Z_q_y = s[22*w + k];
-        const real Z_a_y = Z_a_prs_y + Z_q_y;
-        const real Z_a_prs_z = sums[5*w + k];
+        const real Z_a_y = Z_a_y_of_legs + Z_q_y;
+        const real Z_a_z_of_legs = sums[5*w + k];
         const real Z_q_z = s[23*w + k];
-        const real Z_a_z = Z_a_prs_z + Z_q_z;
+        const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
@@ -2728,31 +2757,36 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0}, sums[6] = {0}, terms_prs[6*LEGS(3)] = {0}, o_prs[2*LEGS(3)] = {0};
+    real s[24] = {0};
+    real sums[6] = {0};
+    real terms_prs[6*LEGS(LEGS_OF_prs)] = {0};
+    real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        Z_place_prs(1, LEGS(3), o_prs, leg, t);
+    Z_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        Z_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_prs + n*LEGS(3), 3);
+        sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
     Z_after(1, s, sums, Z, t);
 }
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES], sums[6*LANES], o_prs[2*LANES];
+    real s[24*LANES];
+    real sums[6*LANES];
+    real o_prs[2*LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         Z_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
         Z_place_prs(LANES, LANES, o_prs, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
-/* ---- H: 177 mul, 114 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- H ---- */
 INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -2913,12 +2947,12 @@ INLINE void H_place_prs(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        H[(9 + leg)*w + k] = o[3*count + first + k];
-        H[(12 + leg)*w + k] = o[4*count + first + k];
-        H[(15 + leg)*w + k] = o[5*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + leg)*w + k] = o[5*count + first + k];
         t->unreachable[k] += o[6*count + first + k];
         t->singular[k] += o[7*count + first + k];
         t->total[k] += o[8*count + first + k];
@@ -2927,25 +2961,27 @@ INLINE void H_place_prs(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0}, o_prs[9*LEGS(3)] = {0};
+    real s[12] = {0};
+    real o_prs[9*LEGS(LEGS_OF_prs)] = {0};
     H_before(1, X, s, t);
-    H_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        H_place_prs(1, LEGS(3), o_prs, leg, leg, H, t);
+    H_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        H_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, t);
     }
 }
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES], o_prs[9*LANES];
+    real s[12*LANES];
+    real o_prs[9*LANES];
     H_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         H_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
         H_place_prs(LANES, LANES, o_prs, leg, 0, H, t);
     }
 }
 
-/* ---- Hk: 45 mul, 27 add, 0 div, 0 sqrt, 0 trig, every leg counted ---- */
+/* ---- Hk ---- */
 INLINE void Hk_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3038,37 +3074,39 @@ INLINE void Hk_place_prs(size_t w, size_t count, const real *o, size_t leg, size
     *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[(leg)*w + k] = o[0*count + first + k];
-        Hk[(3 + leg)*w + k] = o[1*count + first + k];
-        Hk[(6 + leg)*w + k] = o[2*count + first + k];
-        Hk[(9 + leg)*w + k] = o[3*count + first + k];
-        Hk[(12 + leg)*w + k] = o[4*count + first + k];
-        Hk[(15 + leg)*w + k] = o[5*count + first + k];
+        Hk[(0*NC + leg)*w + k] = o[0*count + first + k];
+        Hk[(NC + leg)*w + k] = o[1*count + first + k];
+        Hk[(2*NC + leg)*w + k] = o[2*count + first + k];
+        Hk[(3*NC + leg)*w + k] = o[3*count + first + k];
+        Hk[(4*NC + leg)*w + k] = o[4*count + first + k];
+        Hk[(5*NC + leg)*w + k] = o[5*count + first + k];
         t->total[k] += o[6*count + first + k];
     }
 }
 
 INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    real s[9] = {0}, o_prs[7*LEGS(3)] = {0};
+    real s[9] = {0};
+    real o_prs[7*LEGS(LEGS_OF_prs)] = {0};
     Hk_before(1, X, s, t);
-    Hk_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        Hk_place_prs(1, LEGS(3), o_prs, leg, leg, Hk, t);
+    Hk_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        Hk_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, Hk, t);
     }
 }
 
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    real s[9*LANES], o_prs[7*LANES];
+    real s[9*LANES];
+    real o_prs[7*LANES];
     Hk_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         Hk_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
         Hk_place_prs(LANES, LANES, o_prs, leg, 0, Hk, t);
     }
 }
 
-/* ---- constraint_bias: 72 mul, 42 add, 0 div, 0 sqrt, 0 trig, every leg counted ---- */
+/* ---- constraint_bias ---- */
 INLINE void constraint_bias_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3171,7 +3209,7 @@ INLINE void constraint_bias_place_prs(size_t w, size_t count, const real *o, siz
     first, real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        constraint_bias[(leg)*w + k] = o[0*count + first + k];
+        constraint_bias[leg*w + k] = o[0*count + first + k];
         t->total[k] += o[1*count + first + k];
     }
 }
@@ -3179,26 +3217,28 @@ INLINE void constraint_bias_place_prs(size_t w, size_t count, const real *o, siz
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[12] = {0}, o_prs[2*LEGS(3)] = {0};
+    real s[12] = {0};
+    real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     constraint_bias_before(1, X, V, s, t);
-    constraint_bias_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        constraint_bias_place_prs(1, LEGS(3), o_prs, leg, leg, constraint_bias, t);
+    constraint_bias_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        constraint_bias_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, constraint_bias, t);
     }
 }
 
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[12*LANES], o_prs[2*LANES];
+    real s[12*LANES];
+    real o_prs[2*LANES];
     constraint_bias_before(LANES, X, V, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         constraint_bias_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
         constraint_bias_place_prs(LANES, LANES, o_prs, leg, 0, constraint_bias, t);
     }
 }
 
-/* ---- required: 510 mul, 372 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- required ---- */
 INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
     *A, real *s, verdict *t)
 {
@@ -3519,7 +3559,7 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
         const real prs_T_1_in_axes0_x = prs_acc_1_in_axes0_x*prs_link1_mass +
             prs_c_2*prs_f_2_in_axes2_x - prs_f_2_in_axes2_y*prs_s_2;
         /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real prs_G_t = inv_prs_v_2_t*(prs_mu_2_in_axes2_z +
             prs_T_1_in_axes0_x*prs_d_3_in_axes0_y);
         const real prs_G_in_axes2_x = prs_T_1_in_axes0_x*prs_c_2 - prs_G_t*prs_s_2;
@@ -3544,13 +3584,13 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
         const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
         const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
         /* (R_t) force that actuators and external wrench must give */
-        terms[0*count + k] = add ? terms[0*count + k] + prs_c_x : prs_c_x;  /* R_t_t */
-        terms[1*count + k] = add ? terms[1*count + k] + prs_c_y : prs_c_y;  /* R_t_t_2 */
-        terms[2*count + k] = add ? terms[2*count + k] + prs_c_z : prs_c_z;  /* R_t_t_3 */
+        gather(&terms[0*count + k], add, prs_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, prs_c_y);  /* R_t_y_of_legs */
+        gather(&terms[2*count + k], add, prs_c_z);  /* R_t_z_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
-        terms[3*count + k] = add ? terms[3*count + k] + prs_R_a_t : prs_R_a_t;  /* R_a_prs_x */
-        terms[4*count + k] = add ? terms[4*count + k] + prs_R_a_t_2 : prs_R_a_t_2;  /* R_a_prs_y */
-        terms[5*count + k] = add ? terms[5*count + k] + prs_R_a_t_3 : prs_R_a_t_3;  /* R_a_prs_z */
+        gather(&terms[3*count + k], add, prs_R_a_t);  /* R_a_x_of_legs */
+        gather(&terms[4*count + k], add, prs_R_a_t_2);  /* R_a_y_of_legs */
+        gather(&terms[5*count + k], add, prs_R_a_t_3);  /* R_a_z_of_legs */
         /* (prs-w_1) reciprocal vector 1 */
         o[0*count + k] = prs_w_1_x;
         o[1*count + k] = prs_w_1_y;
@@ -3579,18 +3619,18 @@ INLINE void required_place_prs(size_t w, size_t count, const real *o, size_t leg
     real *H, real *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        H[(9 + leg)*w + k] = o[3*count + first + k];
-        H[(12 + leg)*w + k] = o[4*count + first + k];
-        H[(15 + leg)*w + k] = o[5*count + first + k];
-        Hk[(leg)*w + k] = o[6*count + first + k];
-        Hk[(3 + leg)*w + k] = o[7*count + first + k];
-        Hk[(6 + leg)*w + k] = o[8*count + first + k];
-        Hk[(9 + leg)*w + k] = o[9*count + first + k];
-        Hk[(12 + leg)*w + k] = o[10*count + first + k];
-        Hk[(15 + leg)*w + k] = o[11*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + leg)*w + k] = o[5*count + first + k];
+        Hk[(0*NC + leg)*w + k] = o[6*count + first + k];
+        Hk[(NC + leg)*w + k] = o[7*count + first + k];
+        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
+        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
+        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
+        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
         t->unreachable[k] += o[12*count + first + k];
         t->singular[k] += o[13*count + first + k];
     }
@@ -3600,25 +3640,25 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
-        const real R_t_t = sums[0*w + k];
+        const real R_t_x_of_legs = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real R_t_x = f_p_x - R_t_t;
-        const real R_t_t_2 = sums[1*w + k];
+        const real R_t_x = f_p_x - R_t_x_of_legs;
+        const real R_t_y_of_legs = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real R_t_y = f_p_y - R_t_t_2;
-        const real R_t_t_3 = sums[2*w + k];
+        const real R_t_y = f_p_y - R_t_y_of_legs;
+        const real R_t_z_of_legs = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real R_t_z = f_p_z - R_t_t_3;
+        const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
-        const real R_a_prs_x = sums[3*w + k];
+        const real R_a_x_of_legs = sums[3*w + k];
         const real mu_p_x = s[27*w + k];
-        const real R_a_x = R_a_prs_x + mu_p_x;
-        const real R_a_prs_y = sums[4*w + k];
+        const real R_a_x = R_a_x_of_legs + mu_p_x;
+        const real R_a_y_of_legs = sums[4*w + k];
         const real mu_p_y = s[28*w + k];
-        const real R_a_y = R_a_prs_y + mu_p_y;
-        const real R_a_prs_z = sums[5*w + k];
+        const real R_a_y = R_a_y_of_legs + mu_p_y;
+        const real R_a_z_of_legs = sums[5*w + k];
         const real mu_p_z = s[29*w + k];
-        const real R_a_z = R_a_prs_z + mu_p_z;
+        const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
@@ -3633,14 +3673,17 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
-    real s[30] = {0}, sums[6] = {0}, terms_prs[6*LEGS(3)] = {0}, o_prs[14*LEGS(3)] = {0};
+    real s[30] = {0};
+    real sums[6] = {0};
+    real terms_prs[6*LEGS(LEGS_OF_prs)] = {0};
+    real o_prs[14*LEGS(LEGS_OF_prs)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        required_place_prs(1, LEGS(3), o_prs, leg, leg, H, Hk, t);
+    required_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        required_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, Hk, t);
     }
     for (size_t n = 0; n < 6; ++n) {
-        sums[n] = total(terms_prs + n*LEGS(3), 3);
+        sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
     required_after(1, s, sums, required);
 }
@@ -3648,17 +3691,19 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, real *Hk, verdict *t)
 {
-    real s[30*LANES], sums[6*LANES], o_prs[14*LANES];
+    real s[30*LANES];
+    real sums[6*LANES];
+    real o_prs[14*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         required_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
         required_place_prs(LANES, LANES, o_prs, leg, 0, H, Hk, t);
     }
     required_after(LANES, s, sums, required);
 }
 
-/* ---- inverse_kinematics: 93 mul, 75 add, 3 div, 6 sqrt, 3 trig, every leg counted ---- */
+/* ---- inverse_kinematics ---- */
 INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3790,7 +3835,7 @@ INLINE void inverse_kinematics_place_prs(size_t w, size_t count, const real *o, 
     first, real *q, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        q[(2*leg)*w + k] = o[0*count + first + k];
+        q[2*leg*w + k] = o[0*count + first + k];
         q[(1 + 2*leg)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -3800,25 +3845,27 @@ INLINE void inverse_kinematics_place_prs(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0}, o_prs[5*LEGS(3)] = {0};
+    real s[12] = {0};
+    real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
     inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        inverse_kinematics_place_prs(1, LEGS(3), o_prs, leg, leg, q, t);
+    inverse_kinematics_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        inverse_kinematics_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, q, t);
     }
 }
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES], o_prs[5*LANES];
+    real s[12*LANES];
+    real o_prs[5*LANES];
     inverse_kinematics_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         inverse_kinematics_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
         inverse_kinematics_place_prs(LANES, LANES, o_prs, leg, 0, q, t);
     }
 }
 
-/* ---- joint_rates: 138 mul, 105 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates ---- */
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -3989,7 +4036,7 @@ INLINE void joint_rates_place_prs(size_t w, size_t count, const real *o, size_t 
     real *qd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qd[(2*leg)*w + k] = o[0*count + first + k];
+        qd[2*leg*w + k] = o[0*count + first + k];
         qd[(1 + 2*leg)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -3999,26 +4046,28 @@ INLINE void joint_rates_place_prs(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0}, o_prs[5*LEGS(3)] = {0};
+    real s[18] = {0};
+    real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
     joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_rates_place_prs(1, LEGS(3), o_prs, leg, leg, qd, t);
+    joint_rates_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        joint_rates_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, qd, t);
     }
 }
 
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES], o_prs[5*LANES];
+    real s[18*LANES];
+    real o_prs[5*LANES];
     joint_rates_before(LANES, X, V, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         joint_rates_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
         joint_rates_place_prs(LANES, LANES, o_prs, leg, 0, qd, t);
     }
 }
 
-/* ---- joint_accelerations: 219 mul, 162 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations ---- */
 INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
     *s, verdict *t)
 {
@@ -4240,7 +4289,7 @@ INLINE void joint_accelerations_place_prs(size_t w, size_t count, const real *o,
     size_t first, real *qdd, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        qdd[(2*leg)*w + k] = o[0*count + first + k];
+        qdd[2*leg*w + k] = o[0*count + first + k];
         qdd[(1 + 2*leg)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -4251,26 +4300,28 @@ INLINE void joint_accelerations_place_prs(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0}, o_prs[5*LEGS(3)] = {0};
+    real s[24] = {0};
+    real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
     joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        joint_accelerations_place_prs(1, LEGS(3), o_prs, leg, leg, qdd, t);
+    joint_accelerations_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        joint_accelerations_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, qdd, t);
     }
 }
 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES], o_prs[5*LANES];
+    real s[24*LANES];
+    real o_prs[5*LANES];
     joint_accelerations_before(LANES, X, V, A, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         joint_accelerations_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
         joint_accelerations_place_prs(LANES, LANES, o_prs, leg, 0, qdd, t);
     }
 }
 
-/* ---- constraints: 36 mul, 42 add, 0 div, 0 sqrt, 0 trig, every leg counted ---- */
+/* ---- constraints ---- */
 INLINE void constraints_before(size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -4360,7 +4411,7 @@ INLINE void constraints_legs_prs(const prepared *m, size_t w, size_t leg, size_t
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
         const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        /* (prs-phi_c1) distance by which the leg misses the platform, along a direction left out */
+        /* (prs-phi_c1) loop-closure residual along the constraint force */
         o[0*count + k] = prs_S_in_axes0_z;
         o[1*count + k] = prs_S_in_axes0_z;
     }
@@ -4370,32 +4421,34 @@ INLINE void constraints_place_prs(size_t w, size_t count, const real *o, size_t 
     real *constraints, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        constraints[(leg)*w + k] = o[0*count + first + k];
+        constraints[leg*w + k] = o[0*count + first + k];
         t->total[k] += o[1*count + first + k];
     }
 }
 
 INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[12] = {0}, o_prs[2*LEGS(3)] = {0};
+    real s[12] = {0};
+    real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     constraints_before(1, X, s, t);
-    constraints_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        constraints_place_prs(1, LEGS(3), o_prs, leg, leg, constraints, t);
+    constraints_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        constraints_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, constraints, t);
     }
 }
 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[12*LANES], o_prs[2*LANES];
+    real s[12*LANES];
+    real o_prs[2*LANES];
     constraints_before(LANES, X, s, t);
-    for (size_t leg = 0; leg < 3; ++leg) {
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         constraints_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
         constraints_place_prs(LANES, LANES, o_prs, leg, 0, constraints, t);
     }
 }
 
-/* ---- legs: 363 mul, 246 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs ---- */
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
     *t)
 {
@@ -4638,7 +4691,7 @@ INLINE void legs_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real prs_T_1_in_axes0_x = prs_acc_1_in_axes0_x*prs_link1_mass +
             prs_c_2*prs_f_2_in_axes2_x - prs_f_2_in_axes2_y*prs_s_2;
         /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real prs_G_t = inv_prs_v_2_t*(prs_mu_2_in_axes2_z +
             prs_T_1_in_axes0_x*prs_d_3_in_axes0_y);
         const real prs_G_in_axes2_x = prs_T_1_in_axes0_x*prs_c_2 - prs_G_t*prs_s_2;
@@ -4672,35 +4725,36 @@ INLINE void legs_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, 
 }
 
 INLINE void legs_place_prs(size_t w, size_t count, const real *o, size_t leg, size_t first, real
-    *leg_force, real *drive, real *constraint_direction, verdict *t)
+    *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o[0*count + first + k];
-        leg_force[(1 + 3*leg)*w + k] = o[1*count + first + k];
-        leg_force[(2 + 3*leg)*w + k] = o[2*count + first + k];
-        drive[(3*leg)*w + k] = o[3*count + first + k];
-        drive[(1 + 3*leg)*w + k] = o[4*count + first + k];
-        drive[(2 + 3*leg)*w + k] = o[5*count + first + k];
-        constraint_direction[(3*leg)*w + k] = o[6*count + first + k];
-        constraint_direction[(1 + 3*leg)*w + k] = o[7*count + first + k];
-        constraint_direction[(2 + 3*leg)*w + k] = o[8*count + first + k];
+        leg_force[3*leg*w + k] = o[0*count + first + k];
+        leg_force[(3*leg + 1)*w + k] = o[1*count + first + k];
+        leg_force[(3*leg + 2)*w + k] = o[2*count + first + k];
+        actuator[3*leg*w + k] = o[3*count + first + k];
+        actuator[(3*leg + 1)*w + k] = o[4*count + first + k];
+        actuator[(3*leg + 2)*w + k] = o[5*count + first + k];
+        constraint_direction[3*leg*w + k] = o[6*count + first + k];
+        constraint_direction[(3*leg + 1)*w + k] = o[7*count + first + k];
+        constraint_direction[(3*leg + 2)*w + k] = o[8*count + first + k];
         t->unreachable[k] += o[9*count + first + k];
         t->singular[k] += o[10*count + first + k];
     }
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
-    *leg_force, real *drive, real *constraint_direction, verdict *t)
+    *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
-    real s[24] = {0}, o_prs[11*LEGS(3)] = {0};
+    real s[24] = {0};
+    real o_prs[11*LEGS(LEGS_OF_prs)] = {0};
     legs_before(1, X, V, A, s, t);
-    legs_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        legs_place_prs(1, LEGS(3), o_prs, leg, leg, leg_force, drive, constraint_direction, t);
+    legs_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        legs_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, leg_force, actuator, constraint_direction, t);
     }
 }
 
-/* ---- potential: 132 mul, 123 add, 3 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- potential ---- */
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
@@ -4852,7 +4906,7 @@ INLINE void potential_legs_prs(const prepared *m, size_t w, size_t leg, size_t l
             prs_g_in_axes0_y*(prs_h_1_in_spec0_y + prs_potential_t + prs_potential_t_2 +
             prs_c_2*prs_h_2_in_spec2_y + prs_h_2_in_spec2_x*prs_s_2);
         /* (potential) potential energy */
-        terms[0*count + k] = add ? terms[0*count + k] + prs_potential_t_5 : prs_potential_t_5;  /* potential_t_2 */
+        gather(&terms[0*count + k], add, prs_potential_t_5);  /* potential_of_legs */
         const real prs_root_2_t = m->prs_root_2_t[i];
         o[0*count + k] = UNLESS(prs_disc_1 >= 0);
         o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t);
@@ -4871,9 +4925,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
+        const real potential_of_legs = sums[0*w + k];
         const real potential_t = s[12*w + k];
-        const real potential_t_2 = sums[0*w + k];
-        const real potential_ = -potential_t - potential_t_2;
+        const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
@@ -4881,19 +4935,22 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0}, sums[1] = {0}, terms_prs[1*LEGS(3)] = {0}, o_prs[2*LEGS(3)] = {0};
+    real s[13] = {0};
+    real sums[1] = {0};
+    real terms_prs[LEGS(LEGS_OF_prs)] = {0};
+    real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        potential_place_prs(1, LEGS(3), o_prs, leg, t);
+    potential_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        potential_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_prs + n*LEGS(3), 3);
+        sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
     potential_after(1, s, sums, potential);
 }
 
-/* ---- condition: 211 mul, 144 add, 6 div, 10 sqrt, 0 trig, every leg counted ---- */
+/* ---- condition ---- */
 INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
     verdict *t)
 {
@@ -5034,7 +5091,7 @@ INLINE void condition_legs_prs(const prepared *m, size_t w, size_t leg, size_t l
             prs_base_frame_zy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_zy*prs_c_2 -
             prs_base_frame_zx*prs_s_2);
         /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         const real prs_pivot_size = magnitude(prs_rho2_2);
         const real prs_pivot_size_2 = magnitude(prs_v_2_t);
         const real inv_prs_root_2_t = m->inv_prs_root_2_t[i];
@@ -5059,7 +5116,7 @@ INLINE void condition_legs_prs(const prepared *m, size_t w, size_t leg, size_t l
         const real prs_spread_t_4 = prs_spread_t*prs_spread_t + prs_spread_t_2*prs_spread_t_2 +
             prs_spread_t_3*prs_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
-        terms[0*count + k] = add ? terms[0*count + k] + prs_spread_t_4 : prs_spread_t_4;  /* spread_prs */
+        gather(&terms[0*count + k], add, prs_spread_t_4);  /* spread_prs */
         /* (prs-w_1) reciprocal vector 1 */
         o[0*count + k] = prs_w_1_x;
         o[1*count + k] = prs_w_1_y;
@@ -5077,7 +5134,7 @@ INLINE void condition_legs_prs(const prepared *m, size_t w, size_t leg, size_t l
         o[10*count + k] = prs_Hk_a_1_y;
         o[11*count + k] = prs_Hk_a_1_z;
         /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
+           degrees of freedom */
         o[12*count + k] = prs_least_pivots;
         o[13*count + k] = prs_disc_1;
         o[16*count + k] = ((prs_w_1_x + (prs_w_1_y + prs_w_1_z)) + ((prs_H_a_1_x + prs_H_a_1_y) +
@@ -5095,20 +5152,20 @@ INLINE void condition_place_prs(size_t w, size_t count, const real *o, size_t le
     real *H, real *Hk, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o[0*count + first + k];
-        H[(3 + leg)*w + k] = o[1*count + first + k];
-        H[(6 + leg)*w + k] = o[2*count + first + k];
-        H[(9 + leg)*w + k] = o[3*count + first + k];
-        H[(12 + leg)*w + k] = o[4*count + first + k];
-        H[(15 + leg)*w + k] = o[5*count + first + k];
-        Hk[(leg)*w + k] = o[6*count + first + k];
-        Hk[(3 + leg)*w + k] = o[7*count + first + k];
-        Hk[(6 + leg)*w + k] = o[8*count + first + k];
-        Hk[(9 + leg)*w + k] = o[9*count + first + k];
-        Hk[(12 + leg)*w + k] = o[10*count + first + k];
-        Hk[(15 + leg)*w + k] = o[11*count + first + k];
-        pivots[(leg)*w + k] = o[12*count + first + k];
-        reach[(leg)*w + k] = o[13*count + first + k];
+        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[(NU + leg)*w + k] = o[1*count + first + k];
+        H[(2*NU + leg)*w + k] = o[2*count + first + k];
+        H[(3*NU + leg)*w + k] = o[3*count + first + k];
+        H[(4*NU + leg)*w + k] = o[4*count + first + k];
+        H[(5*NU + leg)*w + k] = o[5*count + first + k];
+        Hk[(0*NC + leg)*w + k] = o[6*count + first + k];
+        Hk[(NC + leg)*w + k] = o[7*count + first + k];
+        Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
+        Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
+        Hk[(4*NC + leg)*w + k] = o[10*count + first + k];
+        Hk[(5*NC + leg)*w + k] = o[11*count + first + k];
+        pivots[leg*w + k] = o[12*count + first + k];
+        reach[leg*w + k] = o[13*count + first + k];
         t->unreachable[k] += o[14*count + first + k];
         t->singular[k] += o[15*count + first + k];
         t->total[k] += o[16*count + first + k];
@@ -5132,14 +5189,17 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
-    real s[12] = {0}, sums[1] = {0}, terms_prs[1*LEGS(3)] = {0}, o_prs[17*LEGS(3)] = {0};
+    real s[12] = {0};
+    real sums[1] = {0};
+    real terms_prs[LEGS(LEGS_OF_prs)] = {0};
+    real o_prs[17*LEGS(LEGS_OF_prs)] = {0};
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_prs(m, 1, 0, 1, s, 0, LEGS(3), 0, terms_prs, o_prs);
-    for (size_t leg = 0; leg < 3; ++leg) {
-        condition_place_prs(1, LEGS(3), o_prs, leg, leg, H, Hk, pivots, reach, t);
+    condition_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
+        condition_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, Hk, pivots, reach, t);
     }
     for (size_t n = 0; n < 1; ++n) {
-        sums[n] = total(terms_prs + n*LEGS(3), 3);
+        sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
     condition_after(m, 1, sums, lengths, t);
 }
@@ -5150,116 +5210,116 @@ INLINE void M_one(const prepared *m, const real *X, real *M_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     M_run(m, X, M_out, &why);
     if (!is_finite(why.total[0])) {
-        check(36, 1, M_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(36, M_out);
+        refuse(NV*NV, M_out);
     }
 }
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[7*LANES], M[36*LANES];
+    real X_in[NQ*LANES], M[NV*NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
     suspect(&why, code);
-    deliver(36, M, M_out);
+    deliver(NV*NV, M, M_out);
 }
 
 INLINE void Z_one(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     Z_run(m, X, V, Z_out, &why);
     if (!is_finite(why.total[0])) {
-        check(6, 1, Z_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, Z_out);
+        refuse(NV, Z_out);
     }
 }
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], Z[6*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     Z_run_lanes(m, X, V, Z, &why);
     suspect(&why, code);
-    deliver(6, Z, Z_out);
+    deliver(NV, Z, Z_out);
 }
 
 INLINE void H_one(const prepared *m, const real *X, real *H_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H_out, &why);
     if (!is_finite(why.total[0])) {
-        check(18, 1, H_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(18, H_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[7*LANES], H[18*LANES];
+    real X_in[NQ*LANES], H[NV*NU*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
     suspect(&why, code);
-    deliver(18, H, H_out);
+    deliver(NV*NU, H, H_out);
 }
 
 INLINE void Hk_one(const prepared *m, const real *X, real *Hk_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     Hk_run(m, X, Hk_out, &why);
     if (!is_finite(why.total[0])) {
-        check(18, 1, Hk_out, why.overflow);
+        check(NV*NC, 1, Hk_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(18, Hk_out);
+        refuse(NV*NC, Hk_out);
     }
 }
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
-    real X_in[7*LANES], Hk[18*LANES];
+    real X_in[NQ*LANES], Hk[NV*NC*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     Hk_run_lanes(m, X, Hk, &why);
     suspect(&why, code);
-    deliver(18, Hk, Hk_out);
+    deliver(NV*NC, Hk, Hk_out);
 }
 
 INLINE void constraints_one(const prepared *m, const real *X, real *constraints_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     constraints_run(m, X, constraints_out, &why);
     if (!is_finite(why.total[0])) {
         check(3, 1, constraints_out, why.overflow);
@@ -5272,10 +5332,10 @@ INLINE void constraints_one(const prepared *m, const real *X, real *constraints_
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
-    real X_in[7*LANES], constraints[3*LANES];
+    real X_in[NQ*LANES], constraints[3*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     constraints_run_lanes(m, X, constraints, &why);
     suspect(&why, code);
     deliver(3, constraints, constraints_out);
@@ -5286,10 +5346,10 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     constraint_bias_run(m, X, V, constraint_bias_out, &why);
     if (!is_finite(why.total[0])) {
@@ -5304,11 +5364,11 @@ INLINE void constraint_bias_one(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], constraint_bias[3*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[3*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     constraint_bias_run_lanes(m, X, V, constraint_bias, &why);
     suspect(&why, code);
     deliver(3, constraint_bias, constraint_bias_out);
@@ -5318,26 +5378,26 @@ INLINE void inverse_kinematics_one(const prepared *m, const real *X, real *q_out
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_out, &why);
     if (!is_finite(why.total[0])) {
-        check(6, 1, q_out, why.overflow);
+        check(NJ, 1, q_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, q_out);
+        refuse(NJ, q_out);
     }
 }
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[7*LANES], q[6*LANES];
+    real X_in[NQ*LANES], q[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
     suspect(&why, code);
-    deliver(6, q, q_out);
+    deliver(NJ, q, q_out);
 }
 
 INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
@@ -5345,32 +5405,32 @@ INLINE void joint_rates_one(const prepared *m, const real *X, const real *V, rea
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(6, 1, qd_out, why.overflow);
+        check(NJ, 1, qd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, qd_out);
+        refuse(NJ, qd_out);
     }
 }
 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], qd[6*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd, &why);
     suspect(&why, code);
-    deliver(6, qd, qd_out);
+    deliver(NJ, qd, qd_out);
 }
 
 INLINE void joint_accelerations_one(const prepared *m, const real *X, const real *V, const real
@@ -5378,123 +5438,123 @@ INLINE void joint_accelerations_one(const prepared *m, const real *X, const real
 {
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_out, &why);
     if (!is_finite(why.total[0])) {
-        check(6, 1, qdd_out, why.overflow);
+        check(NJ, 1, qdd_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(6, qdd_out);
+        refuse(NJ, qdd_out);
     }
 }
 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd[6*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    A = side_by_side(6, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd, &why);
     suspect(&why, code);
-    deliver(6, qdd, qdd_out);
+    deliver(NJ, qdd, qdd_out);
 }
 
 INLINE void dynamics_one(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real Hk[18] = {0}, constraint_bias[3] = {0};
+    real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     dynamics_run(m, X, V, M_out, Z_out, H_out, Hk, constraint_bias, &why);
     if (!is_finite(why.total[0])) {
-        check(36, 1, M_out, why.overflow);
-        check(6, 1, Z_out, why.overflow);
-        check(18, 1, H_out, why.overflow);
+        check(NV*NV, 1, M_out, why.overflow);
+        check(NV, 1, Z_out, why.overflow);
+        check(NV*NU, 1, H_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(36, M_out);
-        refuse(6, Z_out);
-        refuse(18, H_out);
+        refuse(NV*NV, M_out);
+        refuse(NV, Z_out);
+        refuse(NV*NU, H_out);
     }
 }
 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], M[36*LANES], Z[6*LANES], H[18*LANES], Hk[18*LANES],
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES],
         constraint_bias[3*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     suspect(&why, code);
-    deliver(36, M, M_out);
-    deliver(6, Z, Z_out);
-    deliver(18, H, H_out);
+    deliver(NV*NV, M, M_out);
+    deliver(NV, Z, Z_out);
+    deliver(NV*NU, H, H_out);
 }
 
-INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, real *x, real
-    *unsure, real *total)
+INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
+    real *a, const real *b, real *x, real *unsure, real *total)
 {
     for (size_t k = 0; k < w; ++k) {
-        real a00 = a[(2*stride + 0)*w + k];
-        real a01 = a[(2*stride + 1)*w + k];
-        real a02 = a[(2*stride + 2)*w + k];
-        real a03 = a[(2*stride + 3)*w + k];
-        real a04 = a[(2*stride + 4)*w + k];
-        real a05 = a[(2*stride + 5)*w + k];
-        real b0 = b[2*w + k];
-        real a10 = a[(4*stride + 0)*w + k];
-        real a11 = a[(4*stride + 1)*w + k];
-        real a12 = a[(4*stride + 2)*w + k];
-        real a13 = a[(4*stride + 3)*w + k];
-        real a14 = a[(4*stride + 4)*w + k];
-        real a15 = a[(4*stride + 5)*w + k];
-        real b1 = b[4*w + k];
-        real a20 = a[(3*stride + 0)*w + k];
-        real a21 = a[(3*stride + 1)*w + k];
-        real a22 = a[(3*stride + 2)*w + k];
-        real a23 = a[(3*stride + 3)*w + k];
-        real a24 = a[(3*stride + 4)*w + k];
-        real a25 = a[(3*stride + 5)*w + k];
-        real b2 = b[3*w + k];
-        real a30 = a[(5*stride + 0)*w + k];
-        real a31 = a[(5*stride + 1)*w + k];
-        real a32 = a[(5*stride + 2)*w + k];
-        real a33 = a[(5*stride + 3)*w + k];
-        real a34 = a[(5*stride + 4)*w + k];
-        real a35 = a[(5*stride + 5)*w + k];
-        real b3 = b[5*w + k];
-        real a40 = a[(1*stride + 0)*w + k];
-        real a41 = a[(1*stride + 1)*w + k];
-        real a42 = a[(1*stride + 2)*w + k];
-        real a43 = a[(1*stride + 3)*w + k];
-        real a44 = a[(1*stride + 4)*w + k];
-        real a45 = a[(1*stride + 5)*w + k];
-        real b4 = b[1*w + k];
-        real a50 = a[(0)*w + k];
-        real a51 = a[(1)*w + k];
-        real a52 = a[(2)*w + k];
-        real a53 = a[(3)*w + k];
-        real a54 = a[(4)*w + k];
-        real a55 = a[(5)*w + k];
-        real b5 = b[0*w + k];
+        real a00 = a[(order[0]*stride + 0)*w + k];
+        real a01 = a[(order[0]*stride + 1)*w + k];
+        real a02 = a[(order[0]*stride + 2)*w + k];
+        real a03 = a[(order[0]*stride + 3)*w + k];
+        real a04 = a[(order[0]*stride + 4)*w + k];
+        real a05 = a[(order[0]*stride + 5)*w + k];
+        real b0 = b[order[0]*w + k];
+        real a10 = a[(order[1]*stride + 0)*w + k];
+        real a11 = a[(order[1]*stride + 1)*w + k];
+        real a12 = a[(order[1]*stride + 2)*w + k];
+        real a13 = a[(order[1]*stride + 3)*w + k];
+        real a14 = a[(order[1]*stride + 4)*w + k];
+        real a15 = a[(order[1]*stride + 5)*w + k];
+        real b1 = b[order[1]*w + k];
+        real a20 = a[(order[2]*stride + 0)*w + k];
+        real a21 = a[(order[2]*stride + 1)*w + k];
+        real a22 = a[(order[2]*stride + 2)*w + k];
+        real a23 = a[(order[2]*stride + 3)*w + k];
+        real a24 = a[(order[2]*stride + 4)*w + k];
+        real a25 = a[(order[2]*stride + 5)*w + k];
+        real b2 = b[order[2]*w + k];
+        real a30 = a[(order[3]*stride + 0)*w + k];
+        real a31 = a[(order[3]*stride + 1)*w + k];
+        real a32 = a[(order[3]*stride + 2)*w + k];
+        real a33 = a[(order[3]*stride + 3)*w + k];
+        real a34 = a[(order[3]*stride + 4)*w + k];
+        real a35 = a[(order[3]*stride + 5)*w + k];
+        real b3 = b[order[3]*w + k];
+        real a40 = a[(order[4]*stride + 0)*w + k];
+        real a41 = a[(order[4]*stride + 1)*w + k];
+        real a42 = a[(order[4]*stride + 2)*w + k];
+        real a43 = a[(order[4]*stride + 3)*w + k];
+        real a44 = a[(order[4]*stride + 4)*w + k];
+        real a45 = a[(order[4]*stride + 5)*w + k];
+        real b4 = b[order[4]*w + k];
+        real a50 = a[(order[5]*stride + 0)*w + k];
+        real a51 = a[(order[5]*stride + 1)*w + k];
+        real a52 = a[(order[5]*stride + 2)*w + k];
+        real a53 = a[(order[5]*stride + 3)*w + k];
+        real a54 = a[(order[5]*stride + 4)*w + k];
+        real a55 = a[(order[5]*stride + 5)*w + k];
+        real b5 = b[order[5]*w + k];
         const real f0 = 1/a00;
         const real d1 = a00*a11 - a10*a01;
         const real f1 = a00/d1;
@@ -5586,8 +5646,8 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         const real f5 = a44/d5;
         const real g54 = a54*f4;
         b5 -= g54*b4;
-        const real x5 = (b5)*f5;
-        const real x4 = (b4)*f4 - a45*f4*x5;
+        const real x5 = b5*f5;
+        const real x4 = b4*f4 - a45*f4*x5;
         const real x3 = (b3 - a35*x5)*f3 - a34*f3*x4;
         const real x2 = (b2 - a25*x5 - a24*x4)*f2 - a23*f2*x3;
         const real x1 = (b1 - a15*x5 - a14*x4 - a13*x3)*f1 - a12*f1*x2;
@@ -5599,241 +5659,257 @@ INLINE void eliminate_0(size_t w, size_t stride, const real *a, const real *b, r
         x[4*w + k] = x4;
         x[5*w + k] = x5;
         total[k] += (x0 + (x1 + x2)) + (x3 + (x4 + x5));
-        const real most0 = larger(magnitude(g10), larger(magnitude(g20), magnitude(g30)));
-        const real most1 = larger(larger(magnitude(g40), larger(magnitude(g50), magnitude(g21))),
-            larger(magnitude(g31), larger(magnitude(g32), magnitude(g54))));
-        const real most2 = larger(larger(magnitude(g41), larger(magnitude(g51), magnitude(g42))),
-            larger(magnitude(g52), larger(magnitude(g43), magnitude(g53))));
-        const real most3 = larger(magnitude(f0), larger(magnitude(f4), magnitude(f5)));
-        const real most4 = larger(magnitude(f1), larger(magnitude(f2), magnitude(f3)));
-        unsure[k] += UNLESS(most0 <= R(2.5)) + UNLESS(most1 <= R(10)) + UNLESS(most2 <= R(40)) +
-            UNLESS(most3 <= R(1000)) + UNLESS(most4 <= R(4000)) + UNLESS(is_finite(a00 + d1 + a22
-            + d3 + a44 + d5));
+        const real most0 = larger(larger(magnitude(g10)*(sizes[0]/sizes[1]),
+            magnitude(g20)*(sizes[0]/sizes[2])), larger(magnitude(g30)*(sizes[0]/sizes[3]),
+            larger(magnitude(g40)*(sizes[0]/sizes[4]), magnitude(g50)*(sizes[0]/sizes[5]))));
+        const real most1 = larger(larger(magnitude(g21)*(sizes[1]/sizes[2]),
+            magnitude(g31)*(sizes[1]/sizes[3])), larger(magnitude(g41)*(sizes[1]/sizes[4]),
+            magnitude(g51)*(sizes[1]/sizes[5])));
+        const real most2 = larger(magnitude(g32)*(sizes[2]/sizes[3]),
+            larger(magnitude(g42)*(sizes[2]/sizes[4]), magnitude(g52)*(sizes[2]/sizes[5])));
+        const real most3 = larger(magnitude(g43)*(sizes[3]/sizes[4]),
+            magnitude(g53)*(sizes[3]/sizes[5]));
+        const real most4 = magnitude(g54)*(sizes[4]/sizes[5]);
+        unsure[k] += UNLESS(larger(larger(magnitude(f0)*sizes[0], larger(magnitude(f1)*sizes[1],
+            magnitude(f2)*sizes[2])), larger(magnitude(f3)*sizes[3],
+            larger(magnitude(f4)*sizes[4], magnitude(f5)*sizes[5]))) <= R(1000));
+        unsure[k] += UNLESS(larger(larger(most0, most1), larger(most2, larger(most3, most4))) <=
+            R(10));
+        unsure[k] += UNLESS(is_finite(a00 + d1 + a22 + d3 + a44 + d5));
     }
 }
 
 INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    real wrench_in[6], required[6] = {0}, H[18] = {0}, Hk[18] = {0}, subtract_2[6] = {0}, beside_3[36]
-        = {0}, solve_4[6] = {0}, unsure_7[1] = {0}, work[48];
+    static const size_t order_solve_1[] = {2, 4, 3, 5, 1, 0};
+    static const real sizes_solve_1[] = {1.0, 0.25, 0.25, 0.25, 1.0, 1.0};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
+        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    beside(6, 3, 3, H, Hk, beside_3);
-    eliminate_0(1, 6, beside_3, subtract_2, solve_4, unsure_7, why.total);
-    if (unsure_7[0] > 0) {
-        set_matrix(6, 1, beside_3, work);
-        solve_apart(6, subtract_2, work, solve_4, why.singular);
-        check(6, 1, solve_4, why.overflow);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    eliminate_6(1, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NV, 1, beside_1, work);
+        solve_apart(NV, subtract_1, work, solve_1, why.singular);
+        check(NV, 1, solve_1, why.overflow);
     }
-    const real *const tau = solve_4;
-    const real *const lambda_ = solve_4 + 3;
-    check(3, 1, tau, why.overflow);
-    check(3, 1, lambda_, why.overflow);
+    const real *const tau = solve_1;
+    const real *const lambda_ = solve_1 + NU;
+    check(NU, 1, tau, why.overflow);
+    check(NC, 1, lambda_, why.overflow);
     judge(&why, code);
-    copy(3, tau, tau_out);
-    copy(3, lambda_, lambda_out);
+    copy(NU, tau, tau_out);
+    copy(NC, lambda_, lambda_out);
     if (*code != OK) {
-        refuse(3, tau_out);
-        refuse(3, lambda_out);
+        refuse(NU, tau_out);
+        refuse(NC, lambda_out);
     }
 }
 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES], required[6*LANES],
-        H[18*LANES], Hk[18*LANES], subtract_2[6*LANES], beside_3[36*LANES] = {0}, solve_4[6*LANES];
+    static const size_t order_solve_1[] = {2, 4, 3, 5, 1, 0};
+    static const real sizes_solve_1[] = {1.0, 0.25, 0.25, 0.25, 1.0, 1.0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
+        H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES], beside_1[NV*NV*LANES] = {0},
+        solve_1[NV*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    A = side_by_side(6, A, A_in, why.total);
-    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6*LANES; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    beside(6, 3*LANES, 3*LANES, H, Hk, beside_3);
-    eliminate_0(LANES, 6, beside_3, subtract_2, solve_4, why.singular, why.total);
-    const real *const tau = solve_4;
-    const real *const lambda_ = solve_4 + 3*LANES;
-    add_up(3, tau, why.total);
-    add_up(3, lambda_, why.total);
+    beside(NV, NU*LANES, NC*LANES, H, Hk, beside_1);
+    eliminate_6(LANES, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, why.singular, why.total);
+    const real *const tau = solve_1;
+    const real *const lambda_ = solve_1 + NU*LANES;
+    add_up(NU, tau, why.total);
+    add_up(NC, lambda_, why.total);
     suspect(&why, code);
-    deliver(3, tau, tau_out);
-    deliver(3, lambda_, lambda_out);
+    deliver(NU, tau, tau_out);
+    deliver(NC, lambda_, lambda_out);
 }
 
 INLINE void forward_dynamics_one(const prepared *m, const real *X, const real *V, const real *tau,
     const real *wrench, real *A_out, real *lambda_out, int *code)
 {
-    real wrench_in[6], M[36] = {0}, Z[6] = {0}, H[18] = {0}, Hk[18] = {0}, constraint_bias[3] = {0},
-        times_1[6] = {0}, add_3[6] = {0}, subtract_4[6] = {0}, negative_5[3] = {0}, join_6[9] = {0},
-        solve_8[9] = {0}, work[108];
+    real wrench_in[NW], M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
+        constraint_bias[3] = {0}, times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0},
+        negative_1[3] = {0}, join_1[9] = {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV +
+        NC))];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(tau, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(3, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     dynamics_run(m, X, V, M, Z, H, Hk, constraint_bias, &why);
-    product(6, 3, 1, 1, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 6; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, 1, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 6; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
     for (size_t i = 0; i < 3; ++i) {
-        negative_5[i] = -constraint_bias[i];
+        negative_1[i] = -constraint_bias[i];
     }
-    beside(1, 6, 3, subtract_4, negative_5, join_6);
-    saddle(6, 3, stride_of(9, 1), 1, M, Hk, work);
-    solve_state(9, join_6, work, solve_8, why.singular);
-    const real *const A = solve_8;
-    const real *const lambda_ = solve_8 + 6;
-    check(6, 1, A, why.overflow);
-    check(3, 1, lambda_, why.overflow);
+    beside(1, NV, 3, subtract_1, negative_1, join_1);
+    saddle(NV, NC, stride_of(NV + NC, 1), 1, M, Hk, work);
+    solve_state(NV + NC, join_1, work, solve_1, why.singular);
+    const real *const A = solve_1;
+    const real *const lambda_ = solve_1 + NV;
+    check(NV, 1, A, why.overflow);
+    check(NC, 1, lambda_, why.overflow);
     judge(&why, code);
-    copy(6, A, A_out);
-    copy(3, lambda_, lambda_out);
+    copy(NV, A, A_out);
+    copy(NC, lambda_, lambda_out);
     if (*code != OK) {
-        refuse(6, A_out);
-        refuse(3, lambda_out);
+        refuse(NV, A_out);
+        refuse(NC, lambda_out);
     }
 }
 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], tau_in[3*LANES], wrench_in[6*LANES], M[36*LANES], Z[6*LANES],
-        H[18*LANES], Hk[18*LANES], constraint_bias[3*LANES], times_1[6*LANES] = {0}, add_3[6*LANES],
-        subtract_4[6*LANES], negative_5[3*LANES], join_6[9*LANES] = {0}, solve_8[9*LANES],
-        work[108*LANES];
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
+        Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[3*LANES], times_1[NV*LANES] =
+        {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[3*LANES], join_1[9*LANES] = {0},
+        solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    tau = side_by_side(3, tau, tau_in, why.total);
-    wrench = optional_side_by_side(6, wrench, 0, wrench_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
+    wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
-    product(6, 3, 1, LANES, H, tau, times_1);
-    const real *const extend_2 = wrench;
-    for (size_t i = 0; i < 6*LANES; ++i) {
-        add_3[i] = times_1[i] + extend_2[i];
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        add_1[i] = times_1[i] + extend_1[i];
     }
-    for (size_t i = 0; i < 6*LANES; ++i) {
-        subtract_4[i] = add_3[i] - Z[i];
+    for (size_t i = 0; i < NV*LANES; ++i) {
+        subtract_1[i] = add_1[i] - Z[i];
     }
     for (size_t i = 0; i < 3*LANES; ++i) {
-        negative_5[i] = -constraint_bias[i];
+        negative_1[i] = -constraint_bias[i];
     }
-    beside(1, 6*LANES, 3*LANES, subtract_4, negative_5, join_6);
-    saddle(6, 3, stride_of(9, LANES), LANES, M, Hk, work);
-    solve(9, LANES, join_6, work, solve_8, why.singular);
-    const real *const A = solve_8;
-    const real *const lambda_ = solve_8 + 6*LANES;
-    add_up(6, A, why.total);
-    add_up(3, lambda_, why.total);
+    beside(1, NV*LANES, 3*LANES, subtract_1, negative_1, join_1);
+    saddle(NV, NC, stride_of(NV + NC, LANES), LANES, M, Hk, work);
+    solve(NV + NC, LANES, join_1, work, solve_1, why.singular);
+    const real *const A = solve_1;
+    const real *const lambda_ = solve_1 + NV*LANES;
+    add_up(NV, A, why.total);
+    add_up(NC, lambda_, why.total);
     suspect(&why, code);
-    deliver(6, A, A_out);
-    deliver(3, lambda_, lambda_out);
+    deliver(NV, A, A_out);
+    deliver(NC, lambda_, lambda_out);
 }
 
 INLINE void complete_acceleration_one(const real *A, real *completed_out, int *code)
 {
     verdict why;
     start(1, &why);
-    check(6, 1, A, why.invalid);
+    check(NV, 1, A, why.invalid);
     const real *const completed = A;
-    check(6, 1, completed, why.overflow);
+    check(NV, 1, completed, why.overflow);
     judge(&why, code);
-    copy(6, completed, completed_out);
+    copy(NV, completed, completed_out);
     if (*code != OK) {
-        refuse(6, completed_out);
+        refuse(NV, completed_out);
     }
 }
 
 INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *forces_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2};
-    static const size_t places_1[] = {0, 1, 2};
-    real wrench_in[6], required[6] = {0}, H[18] = {0}, Hk[18] = {0}, subtract_2[6] = {0}, beside_3[36]
-        = {0}, solve_4[6] = {0}, unsure_7[1] = {0}, leg_force[9] = {0}, drive[9] = {0},
-        constraint_direction[9] = {0}, add_forces_7[9] = {0}, forces[9] = {0}, work[48];
+    static const size_t order_solve_1[] = {2, 4, 3, 5, 1, 0};
+    static const real sizes_solve_1[] = {1.0, 0.25, 0.25, 0.25, 1.0, 1.0};
+    static const size_t places_add_forces_1[] = {0, 1, 2};
+    static const size_t places_forces[] = {0, 1, 2};
+    real wrench_in[NW], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0},
+        beside_1[NV*NV] = {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, leg_force[3*NL] = {0},
+        actuator[9] = {0}, constraint_direction[3*NC] = {0}, add_forces_1[NL*NL] = {0}, forces[NL*NL]
+        = {0}, work[NV*PADDED(NV)];
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
-    wrench = optional(6, wrench, 0, wrench_in, why.invalid);
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
     required_run(m, X, V, A, required, H, Hk, &why);
     const real *const extend_1 = wrench;
-    for (size_t i = 0; i < 6; ++i) {
-        subtract_2[i] = required[i] - extend_1[i];
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
     }
-    beside(6, 3, 3, H, Hk, beside_3);
-    eliminate_0(1, 6, beside_3, subtract_2, solve_4, unsure_7, why.total);
-    if (unsure_7[0] > 0) {
-        set_matrix(6, 1, beside_3, work);
-        solve_apart(6, subtract_2, work, solve_4, why.singular);
-        check(6, 1, solve_4, why.overflow);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    eliminate_6(1, NV, order_solve_1, sizes_solve_1, beside_1, subtract_1, solve_1, unsure_solve_1, why.total);
+    if (unsure_solve_1[0] > 0) {
+        set_matrix(NV, 1, beside_1, work);
+        solve_apart(NV, subtract_1, work, solve_1, why.singular);
+        check(NV, 1, solve_1, why.overflow);
     }
-    const real *const split_5 = solve_4;
-    const real *const split_6 = solve_4 + 3;
-    legs_run(m, X, V, A, leg_force, drive, constraint_direction, &why);
-    for (size_t i = 0; i < 9; ++i) {
-        add_forces_7[i] = leg_force[i];
+    const real *const split_1 = solve_1;
+    const real *const split_2 = solve_1 + 3;
+    legs_run(m, X, V, A, leg_force, actuator, constraint_direction, &why);
+    for (size_t i = 0; i < NL*NL; ++i) {
+        add_forces_1[i] = leg_force[i];
     }
-    add_forces(3, 3, 1, places_0, split_5, drive, add_forces_7);
-    for (size_t i = 0; i < 9; ++i) {
-        forces[i] = add_forces_7[i];
+    add_forces(NL, 3, 1, places_add_forces_1, split_1, actuator, add_forces_1);
+    for (size_t i = 0; i < NL*NL; ++i) {
+        forces[i] = add_forces_1[i];
     }
-    add_forces(3, 3, 1, places_1, split_6, constraint_direction, forces);
-    check(9, 1, forces, why.overflow);
+    add_forces(NL, NL, 1, places_forces, split_2, constraint_direction, forces);
+    check(NL*NL, 1, forces, why.overflow);
     judge(&why, code);
-    copy(9, forces, forces_out);
+    copy(NL*NL, forces, forces_out);
     if (*code != OK) {
-        refuse(9, forces_out);
+        refuse(NL*NL, forces_out);
     }
 }
 
 INLINE void energy_one(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out, int *code)
 {
-    real M[36] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
     potential_run(m, X, potential_of_potential, &why);
-    half_form(6, 1, V, M, kinetic);
+    half_form(NV, 1, V, M, kinetic);
     const real *const potential = potential_of_potential;
     check(1, 1, kinetic, why.overflow);
     check(1, 1, potential, why.overflow);
@@ -5849,12 +5925,12 @@ INLINE void energy_one(const prepared *m, const real *X, const real *V, real *ki
 INLINE void condition_one(const prepared *m, const real *X, const real *length, real *sigma_out,
     real *legs_out, int *code)
 {
-    static const size_t places_0[] = {3, 4, 5};
-    real length_in[1], H[18] = {0}, Hk[18] = {0}, lengths[2] = {0}, legs[3] = {0}, reach[3] = {0},
-        choose_length_1[1] = {0}, divide_rows_2[18] = {0}, sigma[3] = {0};
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
+        {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
@@ -5862,82 +5938,82 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
         choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 18; ++i) {
-        divide_rows_2[i] = H[i];
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
     }
-    divide_rows(3, 3, 1, places_0, choose_length_1, divide_rows_2);
-    singular_values(6, 3, divide_rows_2, sigma);
+    divide_rows(NU, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(3, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(3, 1, sigma, why.overflow);
+    check(NU, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(3, sigma, sigma_out);
-    copy(3, legs, legs_out);
+    copy(NU, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(3, sigma_out);
-        refuse(3, legs_out);
+        refuse(NU, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 INLINE void condition_constrained_one(const prepared *m, const real *X, const real *length, real
     *sigma_out, real *legs_out, int *code)
 {
-    static const size_t places_0[] = {3, 4, 5};
-    real length_in[1], H[18] = {0}, Hk[18] = {0}, lengths[2] = {0}, legs[3] = {0}, reach[3] = {0},
-        beside_1[36] = {0}, choose_length_2[1] = {0}, divide_rows_3[36] = {0}, sigma[6] = {0};
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real length_in[1], H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] =
+        {0}, beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] =
+        {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     require_positive(1, 1, length, why.invalid);
     length = optional(1, length, 0, length_in, why.invalid);
     condition_run(m, X, H, Hk, lengths, legs, reach, &why);
-    beside(6, 3, 3, H, Hk, beside_1);
+    beside(NV, NU, NC, H, Hk, beside_1);
     for (size_t i = 0; i < 1; ++i) {
-        choose_length_2[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
+        choose_length_1[i] = length[i] > 0 ? length[i] : lengths[i] > TINY*lengths[1 + i] ?
             lengths[i] : lengths[1 + i];
     }
-    for (size_t i = 0; i < 36; ++i) {
-        divide_rows_3[i] = beside_1[i];
+    for (size_t i = 0; i < NV*NV; ++i) {
+        divide_rows_1[i] = beside_1[i];
     }
-    divide_rows(3, 6, 1, places_0, choose_length_2, divide_rows_3);
-    singular_values(6, 6, divide_rows_3, sigma);
+    divide_rows(3, NV, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NV, divide_rows_1, sigma);
     if (!is_finite(why.total[0])) {
-        check(3, 1, legs, why.overflow);
+        check(NL, 1, legs, why.overflow);
     }
-    check(6, 1, sigma, why.overflow);
+    check(NV, 1, sigma, why.overflow);
     judge(&why, code);
-    copy(6, sigma, sigma_out);
-    copy(3, legs, legs_out);
+    copy(NV, sigma, sigma_out);
+    copy(NL, legs, legs_out);
     if (*code != OK) {
-        refuse(6, sigma_out);
-        refuse(3, legs_out);
+        refuse(NV, sigma_out);
+        refuse(NL, legs_out);
     }
 }
 
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real q[6] = {0}, take_1[3] = {0}, subtract_2[3] = {0}, constraints[3] = {0}, negative_3[3] = {0},
-        gap[6] = {0};
+    real q[NJ] = {0}, take_1[3] = {0}, subtract_1[NU] = {0}, constraints[3] = {0}, negative_1[3] =
+        {0}, gap[6] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(q_actuated, 3);
+    const real total_in = total(X, NQ) + total(q_actuated, NU);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(3, 1, q_actuated, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(3, 1, places_0, q, take_1);
-    for (size_t i = 0; i < 3; ++i) {
-        subtract_2[i] = q_actuated[i] - take_1[i];
+    take(3, 1, tripod_3prs_ACTUATED, q, take_1);
+    for (size_t i = 0; i < NU; ++i) {
+        subtract_1[i] = q_actuated[i] - take_1[i];
     }
     constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 3; ++i) {
-        negative_3[i] = -constraints[i];
+        negative_1[i] = -constraints[i];
     }
-    beside(1, 3, 3, subtract_2, negative_3, gap);
+    beside(1, NU, 3, subtract_1, negative_1, gap);
     check(6, 1, gap, why.overflow);
     judge(&why, code);
     copy(6, gap, gap_out);
@@ -5948,27 +6024,27 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
 
 static void slope_one(const prepared *m, const real *X, real *slope_out, int *code)
 {
-    real H[18] = {0}, Hk[18] = {0}, slope[36] = {0};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     H_run(m, X, H, &why);
     Hk_run(m, X, Hk, &why);
-    beside(6, 3, 3, H, Hk, slope);
-    check(36, 1, slope, why.overflow);
+    beside(NV, NU, NC, H, Hk, slope);
+    check(NV*NV, 1, slope, why.overflow);
     judge(&why, code);
-    copy(36, slope, slope_out);
+    copy(NV*NV, slope, slope_out);
     if (*code != OK) {
-        refuse(36, slope_out);
+        refuse(NV*NV, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_mismatch(const prepared *m, const real *q_actuated, const real *start, real *found)
 {
-    enum { N = 6, NV = 6, TRIALS = 12 };
+    enum { N = 6, TRIALS = 12 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[7] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     mismatch_one(m, found, q_actuated, gap, &code);
@@ -6011,38 +6087,38 @@ static int search_mismatch(const prepared *m, const real *q_actuated, const real
 INLINE void forward_kinematics_one(const prepared *m, const real *q_actuated, const real *X0, real
     *X_out, int *code)
 {
-    real X[7] = {0};
+    real X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(q_actuated, 3) + total(X0, 7);
+    const real total_in = total(q_actuated, NU) + total(X0, NQ);
     if (!is_finite(total_in)) {
-        check(3, 1, q_actuated, why.invalid);
-        check(7, 1, X0, why.invalid);
+        check(NU, 1, q_actuated, why.invalid);
+        check(NQ, 1, X0, why.invalid);
     }
     blame(search_mismatch(m, q_actuated, X0, X), &why);
-    check(7, 1, X, why.overflow);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 static void constraint_gap_one(const prepared *m, const real *X, real *gap_out, int *code)
 {
-    real constraints[3] = {0}, gap[3] = {0};
+    real constraints[3] = {0}, gap[NC] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     constraints_run(m, X, constraints, &why);
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < NC; ++i) {
         gap[i] = -constraints[i];
     }
-    check(3, 1, gap, why.overflow);
+    check(NC, 1, gap, why.overflow);
     judge(&why, code);
-    copy(3, gap, gap_out);
+    copy(NC, gap, gap_out);
     if (*code != OK) {
-        refuse(3, gap_out);
+        refuse(NC, gap_out);
     }
 }
 
@@ -6050,23 +6126,23 @@ static void constraint_slope_one(const prepared *m, const real *X, real *slope_o
 {
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     Hk_run(m, X, slope_out, &why);
     if (!is_finite(why.total[0])) {
-        check(18, 1, slope_out, why.overflow);
+        check(NV*NC, 1, slope_out, why.overflow);
     }
     judge(&why, code);
     if (*code != OK) {
-        refuse(18, slope_out);
+        refuse(NV*NC, slope_out);
     }
 }
 
 /* The pose at which the residual vanishes, by Gauss-Newton from a start. */
 static int search_constraint_gap(const prepared *m, const real *start, real *found)
 {
-    enum { N = 3, NV = 6, TRIALS = 1 };
+    enum { N = NC, TRIALS = 1 };
     real gap[N] = {0}, next[N] = {0}, slope[NV*N] = {0}, a[N*(NV + 1)], step[NV] = {0};
-    real trial[7] = {0}, size = 0;
+    real trial[NQ] = {0}, size = 0;
     int code;
     memcpy(found, start, sizeof trial);
     constraint_gap_one(m, found, gap, &code);
@@ -6108,26 +6184,26 @@ static int search_constraint_gap(const prepared *m, const real *start, real *fou
 
 INLINE void project_one(const prepared *m, const real *X, real *projected_out, int *code)
 {
-    real projected[7] = {0};
+    real projected[NQ] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     blame(search_constraint_gap(m, X, projected), &why);
-    check(7, 1, projected, why.overflow);
+    check(NQ, 1, projected, why.overflow);
     judge(&why, code);
-    copy(7, projected, projected_out);
+    copy(NQ, projected, projected_out);
     if (*code != OK) {
-        refuse(7, projected_out);
+        refuse(NQ, projected_out);
     }
 }
 
 INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 {
-    real subtract_1[6] = {0};
+    real subtract_1[NV] = {0};
     verdict why;
     start(1, &why);
-    check(6, 1, V, why.invalid);
-    for (size_t i = 0; i < 6; ++i) {
+    check(NV, 1, V, why.invalid);
+    for (size_t i = 0; i < NV; ++i) {
         subtract_1[i] = V[i] - V[i];
     }
     const real *const dissipation = subtract_1;
@@ -6142,85 +6218,85 @@ INLINE void dissipation_one(const real *V, real *dissipation_out, int *code)
 INLINE void momentum_one(const prepared *m, const real *X, const real *V, real *momentum_out, int
     *code)
 {
-    real M[36] = {0}, momentum[6] = {0};
+    real M[NV*NV] = {0}, momentum[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     M_run(m, X, M, &why);
-    product(6, 6, 1, 1, M, V, momentum);
-    check(6, 1, momentum, why.overflow);
+    product(NV, NV, 1, 1, M, V, momentum);
+    check(NV, 1, momentum, why.overflow);
     judge(&why, code);
-    copy(6, momentum, momentum_out);
+    copy(NV, momentum, momentum_out);
     if (*code != OK) {
-        refuse(6, momentum_out);
+        refuse(NV, momentum_out);
     }
 }
 
 INLINE void momentum_lanes(const prepared *m, const real *X, const real *V, real *momentum_out,
     int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], M[36*LANES], momentum[6*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], momentum[NV*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     M_run_lanes(m, X, M, &why);
-    product(6, 6, 1, LANES, M, V, momentum);
-    add_up(6, momentum, why.total);
+    product(NV, NV, 1, LANES, M, V, momentum);
+    add_up(NV, momentum, why.total);
     suspect(&why, code);
-    deliver(6, momentum, momentum_out);
+    deliver(NV, momentum, momentum_out);
 }
 
 INLINE void joint_margins_one(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
-    real q[6] = {0}, margins[6] = {0};
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
+    real q[NJ] = {0}, margins[NJ] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 6; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         margins[i] = q[i];
     }
-    unlimited(6, 6, 1, places_0, margins, why.overflow);
+    unlimited(NJ, NJ, 1, places_margins, margins, why.overflow);
     judge(&why, code);
-    copy(6, margins, margins_out);
+    copy(NJ, margins, margins_out);
     if (*code != OK) {
-        refuse(6, margins_out);
+        refuse(NJ, margins_out);
     }
 }
 
 INLINE void joint_margins_lanes(const prepared *m, const real *X, real *margins_out, int *code)
 {
-    static const size_t places_0[] = {0, 1, 2, 3, 4, 5};
-    real X_in[7*LANES], q[6*LANES], margins[6*LANES];
+    static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
+    real X_in[NQ*LANES], q[NJ*LANES], margins[NJ*LANES];
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 6*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         margins[i] = q[i];
     }
-    unlimited(6, 6, LANES, places_0, margins, why.invalid);
+    unlimited(NJ, NJ, LANES, places_margins, margins, why.invalid);
     suspect(&why, code);
-    deliver(6, margins, margins_out);
+    deliver(NJ, margins, margins_out);
 }
 
 INLINE void within_limits_one(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real q[6] = {0}, subtract_1[6] = {0}, within[1] = {0};
+    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q, &why);
-    for (size_t i = 0; i < 6; ++i) {
+    for (size_t i = 0; i < NJ; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(6, 1, subtract_1, within, why.overflow);
+    not_negative(NJ, 1, subtract_1, within, why.overflow);
     check(1, 1, within, why.overflow);
     judge(&why, code);
     copy(1, within, within_out);
@@ -6231,15 +6307,15 @@ INLINE void within_limits_one(const prepared *m, const real *X, real *within_out
 
 INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_out, int *code)
 {
-    real X_in[7*LANES], q[6*LANES], subtract_1[6*LANES], within[1*LANES] = {0};
+    real X_in[NQ*LANES], q[NJ*LANES], subtract_1[NJ*LANES], within[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
-    for (size_t i = 0; i < 6*LANES; ++i) {
+    for (size_t i = 0; i < NJ*LANES; ++i) {
         subtract_1[i] = q[i] - q[i];
     }
-    not_negative(6, LANES, subtract_1, within, why.invalid);
+    not_negative(NJ, LANES, subtract_1, within, why.invalid);
     add_up(1, within, why.total);
     suspect(&why, code);
     deliver(1, within, within_out);
@@ -6247,129 +6323,123 @@ INLINE void within_limits_lanes(const prepared *m, const real *X, real *within_o
 
 INLINE void actuator_positions_one(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real q_of_inverse_kinematics[6] = {0}, q[3] = {0};
+    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     inverse_kinematics_run(m, X, q_of_inverse_kinematics, &why);
-    take(3, 1, places_0, q_of_inverse_kinematics, q);
-    check(3, 1, q, why.overflow);
+    take(NU, 1, tripod_3prs_ACTUATED, q_of_inverse_kinematics, q);
+    check(NU, 1, q, why.overflow);
     judge(&why, code);
-    copy(3, q, q_out);
+    copy(NU, q, q_out);
     if (*code != OK) {
-        refuse(3, q_out);
+        refuse(NU, q_out);
     }
 }
 
 INLINE void actuator_positions_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real X_in[7*LANES], q_of_inverse_kinematics[6*LANES], q[3*LANES] = {0};
+    real X_in[NQ*LANES], q_of_inverse_kinematics[NJ*LANES], q[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q_of_inverse_kinematics, &why);
-    take(3, 1*LANES, places_0, q_of_inverse_kinematics, q);
-    add_up(3, q, why.total);
+    take(NU, LANES, tripod_3prs_ACTUATED, q_of_inverse_kinematics, q);
+    add_up(NU, q, why.total);
     suspect(&why, code);
-    deliver(3, q, q_out);
+    deliver(NU, q, q_out);
 }
 
 INLINE void actuator_rates_one(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real qd_of_joint_rates[6] = {0}, qd[3] = {0};
+    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     joint_rates_run(m, X, V, qd_of_joint_rates, &why);
-    take(3, 1, places_0, qd_of_joint_rates, qd);
-    check(3, 1, qd, why.overflow);
+    take(NU, 1, tripod_3prs_ACTUATED, qd_of_joint_rates, qd);
+    check(NU, 1, qd, why.overflow);
     judge(&why, code);
-    copy(3, qd, qd_out);
+    copy(NU, qd, qd_out);
     if (*code != OK) {
-        refuse(3, qd_out);
+        refuse(NU, qd_out);
     }
 }
 
 INLINE void actuator_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out,
     int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real X_in[7*LANES], V_in[6*LANES], qd_of_joint_rates[6*LANES], qd[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], qd_of_joint_rates[NJ*LANES], qd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
     joint_rates_run_lanes(m, X, V, qd_of_joint_rates, &why);
-    take(3, 1*LANES, places_0, qd_of_joint_rates, qd);
-    add_up(3, qd, why.total);
+    take(NU, LANES, tripod_3prs_ACTUATED, qd_of_joint_rates, qd);
+    add_up(NU, qd, why.total);
     suspect(&why, code);
-    deliver(3, qd, qd_out);
+    deliver(NU, qd, qd_out);
 }
 
 INLINE void actuator_accelerations_one(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real qdd_of_joint_accelerations[6] = {0}, qdd[3] = {0};
+    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(A, 6);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(6, 1, A, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
     }
     joint_accelerations_run(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1, places_0, qdd_of_joint_accelerations, qdd);
-    check(3, 1, qdd, why.overflow);
+    take(NU, 1, tripod_3prs_ACTUATED, qdd_of_joint_accelerations, qdd);
+    check(NU, 1, qdd, why.overflow);
     judge(&why, code);
-    copy(3, qdd, qdd_out);
+    copy(NU, qdd, qdd_out);
     if (*code != OK) {
-        refuse(3, qdd_out);
+        refuse(NU, qdd_out);
     }
 }
 
 INLINE void actuator_accelerations_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out, int *code)
 {
-    static const size_t places_0[] = {0, 2, 4};
-    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of_joint_accelerations[6*LANES],
-        qdd[3*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd_of_joint_accelerations[NJ*LANES],
+        qdd[NU*LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    A = side_by_side(6, A, A_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    A = side_by_side(NV, A, A_in, why.total);
     joint_accelerations_run_lanes(m, X, V, A, qdd_of_joint_accelerations, &why);
-    take(3, 1*LANES, places_0, qdd_of_joint_accelerations, qdd);
-    add_up(3, qdd, why.total);
+    take(NU, LANES, tripod_3prs_ACTUATED, qdd_of_joint_accelerations, qdd);
+    add_up(NU, qdd, why.total);
     suspect(&why, code);
-    deliver(3, qdd, qdd_out);
+    deliver(NU, qdd, qdd_out);
 }
 
 INLINE void power_one(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real H[18] = {0}, times_1[6] = {0}, power[1] = {0};
+    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6) + total(tau, 3);
+    const real total_in = total(X, NQ) + total(V, NV) + total(tau, NU);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
-        check(3, 1, tau, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NU, 1, tau, why.invalid);
     }
     H_run(m, X, H, &why);
-    product(6, 3, 1, 1, H, tau, times_1);
-    inner(6, 1, times_1, V, power);
+    product(NV, NU, 1, 1, H, tau, times_1);
+    inner(NV, 1, times_1, V, power);
     check(1, 1, power, why.overflow);
     judge(&why, code);
     copy(1, power, power_out);
@@ -6381,16 +6451,16 @@ INLINE void power_one(const prepared *m, const real *X, const real *V, const rea
 INLINE void power_lanes(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out, int *code)
 {
-    real X_in[7*LANES], V_in[6*LANES], tau_in[3*LANES], H[18*LANES], times_1[6*LANES] = {0},
-        power[1*LANES] = {0};
+    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        power[LANES] = {0};
     verdict why;
     start(LANES, &why);
-    X = side_by_side(7, X, X_in, why.total);
-    V = side_by_side(6, V, V_in, why.total);
-    tau = side_by_side(3, tau, tau_in, why.total);
+    X = side_by_side(NQ, X, X_in, why.total);
+    V = side_by_side(NV, V, V_in, why.total);
+    tau = side_by_side(NU, tau, tau_in, why.total);
     H_run_lanes(m, X, H, &why);
-    product(6, 3, 1, LANES, H, tau, times_1);
-    inner(6, LANES, times_1, V, power);
+    product(NV, NU, 1, LANES, H, tau, times_1);
+    inner(NV, LANES, times_1, V, power);
     add_up(1, power, why.total);
     suspect(&why, code);
     deliver(1, power, power_out);
@@ -6401,7 +6471,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     real R[9] = {0};
     verdict why;
     start(1, &why);
-    check(7, 1, X, why.invalid);
+    check(NQ, 1, X, why.invalid);
     const real *const take_1 = X + 3;
     rotation_of_quaternion(take_1, R);
     check(9, 1, R, why.overflow);
@@ -6414,7 +6484,7 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
 
 INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_2[7] = {0};
+    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 3) + total(R, 9);
@@ -6423,42 +6493,42 @@ INLINE void pose_one(const real *t, const real *R, real *X_out, int *code)
         check(9, 1, R, why.invalid);
     }
     quaternion_of_rotation(R, quaternion_of_rotation_1);
-    beside(1, 3, 4, t, quaternion_of_rotation_1, join_2);
-    const real *const X = join_2;
-    check(7, 1, X, why.overflow);
+    beside(1, 3, 4, t, quaternion_of_rotation_1, join_1);
+    const real *const X = join_1;
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
 {
-    real quaternion_rate_3[4] = {0}, X_dot[7] = {0};
+    real quaternion_rate_1[4] = {0}, X_dot[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(V, 6);
+    const real total_in = total(X, NQ) + total(V, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, V, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
     }
     const real *const take_1 = V + 3;
     const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_3);
-    const real *const take_4 = V;
-    beside(1, 3, 4, take_4, quaternion_rate_3, X_dot);
-    check(7, 1, X_dot, why.overflow);
+    quaternion_rate(take_2, take_1, quaternion_rate_1);
+    const real *const take_3 = V;
+    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
-    copy(7, X_dot, X_dot_out);
+    copy(NQ, X_dot, X_dot_out);
     if (*code != OK) {
-        refuse(7, X_dot_out);
+        refuse(NQ, X_dot_out);
     }
 }
 
 INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *code)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_2[7] = {0};
+    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(t, 3) + total(rpy, 3);
@@ -6467,108 +6537,108 @@ INLINE void pose_from_rpy_one(const real *t, const real *rpy, real *X_out, int *
         check(3, 1, rpy, why.invalid);
     }
     quaternion_of_rpy(rpy, quaternion_of_rpy_1);
-    beside(1, 3, 4, t, quaternion_of_rpy_1, join_2);
-    const real *const X = join_2;
-    check(7, 1, X, why.overflow);
+    beside(1, 3, 4, t, quaternion_of_rpy_1, join_1);
+    const real *const X = join_1;
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
 INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int *code)
 {
-    real turn_quaternion_5[4] = {0}, add_6[3] = {0}, X_moved[7] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X, 7) + total(step, 6);
+    const real total_in = total(X, NQ) + total(step, NV);
     if (!is_finite(total_in)) {
-        check(7, 1, X, why.invalid);
-        check(6, 1, step, why.invalid);
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, step, why.invalid);
     }
     const real *const take_1 = X;
     const real *const take_2 = X + 3;
     const real *const take_3 = step;
     const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_5);
+    turn_quaternion(take_2, take_4, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_6[i] = take_1[i] + take_3[i];
+        add_1[i] = take_1[i] + take_3[i];
     }
-    beside(1, 3, 4, add_6, turn_quaternion_5, X_moved);
-    check(7, 1, X_moved, why.overflow);
+    beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
+    check(NQ, 1, X_moved, why.overflow);
     judge(&why, code);
-    copy(7, X_moved, X_moved_out);
+    copy(NQ, X_moved, X_moved_out);
     if (*code != OK) {
-        refuse(7, X_moved_out);
+        refuse(NQ, X_moved_out);
     }
 }
 
 INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *code)
 {
-    real turn_between_5[3] = {0}, subtract_6[3] = {0}, step[6] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 7) + total(X1, 7);
+    const real total_in = total(X0, NQ) + total(X1, NQ);
     if (!is_finite(total_in)) {
-        check(7, 1, X0, why.invalid);
-        check(7, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
     }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
     const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_5);
+    turn_between(take_2, take_4, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_6[i] = take_3[i] - take_1[i];
+        subtract_1[i] = take_3[i] - take_1[i];
     }
-    beside(1, 3, 3, subtract_6, turn_between_5, step);
-    check(6, 1, step, why.overflow);
+    beside(1, 3, 3, subtract_1, turn_between_1, step);
+    check(NV, 1, step, why.overflow);
     judge(&why, code);
-    copy(6, step, step_out);
+    copy(NV, step, step_out);
     if (*code != OK) {
-        refuse(6, step_out);
+        refuse(NV, step_out);
     }
 }
 
 INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real *X_out, int *code)
 {
-    real turn_between_5[3] = {0}, subtract_6[3] = {0}, join_7[6] = {0}, scale_8[6] = {0},
-        turn_quaternion_13[4] = {0}, add_14[3] = {0}, X[7] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] = {0}, join_1[6] = {0}, scale_1[6] = {0},
+        turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
     verdict why;
     start(1, &why);
-    const real total_in = total(X0, 7) + total(X1, 7) + total(s, 1);
+    const real total_in = total(X0, NQ) + total(X1, NQ) + total(s, 1);
     if (!is_finite(total_in)) {
-        check(7, 1, X0, why.invalid);
-        check(7, 1, X1, why.invalid);
+        check(NQ, 1, X0, why.invalid);
+        check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
     const real *const take_1 = X0;
     const real *const take_2 = X0 + 3;
     const real *const take_3 = X1;
     const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_5);
+    turn_between(take_2, take_4, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_6[i] = take_3[i] - take_1[i];
+        subtract_1[i] = take_3[i] - take_1[i];
     }
-    beside(1, 3, 3, subtract_6, turn_between_5, join_7);
+    beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
-        scale_8[i] = join_7[i]*s[i%(1)];
+        scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_9 = X0;
-    const real *const take_10 = X0 + 3;
-    const real *const take_11 = scale_8;
-    const real *const take_12 = scale_8 + 3;
-    turn_quaternion(take_10, take_12, turn_quaternion_13);
+    const real *const take_5 = X0;
+    const real *const take_6 = X0 + 3;
+    const real *const take_7 = scale_1;
+    const real *const take_8 = scale_1 + 3;
+    turn_quaternion(take_6, take_8, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_14[i] = take_9[i] + take_11[i];
+        add_1[i] = take_5[i] + take_7[i];
     }
-    beside(1, 3, 4, add_14, turn_quaternion_13, X);
-    check(7, 1, X, why.overflow);
+    beside(1, 3, 4, add_1, turn_quaternion_1, X);
+    check(NQ, 1, X, why.overflow);
     judge(&why, code);
-    copy(7, X, X_out);
+    copy(NQ, X, X_out);
     if (*code != OK) {
-        refuse(7, X_out);
+        refuse(NQ, X_out);
     }
 }
 
@@ -6587,16 +6657,16 @@ size_t tripod_3prs_M_batch(const tripod_3prs_model *model, size_t n, const tripo
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        M_lanes(model, X + 7*i, M + 36*i, codes);
+        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_M(model, X + 7*(i + k), M + 36*(i + k));
+                codes[k] = tripod_3prs_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_M(model, X + 7*i, M + 36*i);
+        const int code = tripod_3prs_M(model, X + NQ*i, M + NV*NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6616,16 +6686,16 @@ size_t tripod_3prs_Z_batch(const tripod_3prs_model *model, size_t n, const tripo
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Z_lanes(model, X + 7*i, V + 6*i, Z + 6*i, codes);
+        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
+                codes[k] = tripod_3prs_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_Z(model, X + 7*i, V + 6*i, Z + 6*i);
+        const int code = tripod_3prs_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6644,16 +6714,16 @@ size_t tripod_3prs_H_batch(const tripod_3prs_model *model, size_t n, const tripo
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        H_lanes(model, X + 7*i, H + 18*i, codes);
+        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_H(model, X + 7*(i + k), H + 18*(i + k));
+                codes[k] = tripod_3prs_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_H(model, X + 7*i, H + 18*i);
+        const int code = tripod_3prs_H(model, X + NQ*i, H + NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6673,16 +6743,16 @@ size_t tripod_3prs_Hk_batch(const tripod_3prs_model *model, size_t n, const trip
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        Hk_lanes(model, X + 7*i, Hk + 18*i, codes);
+        Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_Hk(model, X + 7*(i + k), Hk + 18*(i + k));
+                codes[k] = tripod_3prs_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_Hk(model, X + 7*i, Hk + 18*i);
+        const int code = tripod_3prs_Hk(model, X + NQ*i, Hk + NV*NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6702,16 +6772,16 @@ size_t tripod_3prs_constraints_batch(const tripod_3prs_model *model, size_t n, c
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraints_lanes(model, X + 7*i, residual + 3*i, codes);
+        constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_constraints(model, X + 7*(i + k), residual + 3*(i + k));
+                codes[k] = tripod_3prs_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_constraints(model, X + 7*i, residual + 3*i);
+        const int code = tripod_3prs_constraints(model, X + NQ*i, residual + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6731,16 +6801,16 @@ size_t tripod_3prs_constraint_bias_batch(const tripod_3prs_model *model, size_t 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        constraint_bias_lanes(model, X + 7*i, V + 6*i, bias + 3*i, codes);
+        constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_constraint_bias(model, X + 7*(i + k), V + 6*(i + k), bias + 3*(i + k));
+                codes[k] = tripod_3prs_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_constraint_bias(model, X + 7*i, V + 6*i, bias + 3*i);
+        const int code = tripod_3prs_constraint_bias(model, X + NQ*i, V + NV*i, bias + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6760,16 +6830,16 @@ size_t tripod_3prs_inverse_kinematics_batch(const tripod_3prs_model *model, size
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_kinematics_lanes(model, X + 7*i, q + 6*i, codes);
+        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_inverse_kinematics(model, X + 7*(i + k), q + 6*(i + k));
+                codes[k] = tripod_3prs_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_inverse_kinematics(model, X + 7*i, q + 6*i);
+        const int code = tripod_3prs_inverse_kinematics(model, X + NQ*i, q + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6789,16 +6859,16 @@ size_t tripod_3prs_joint_rates_batch(const tripod_3prs_model *model, size_t n, c
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_rates_lanes(model, X + 7*i, V + 6*i, rates + 6*i, codes);
+        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 6*(i + k));
+                codes[k] = tripod_3prs_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_joint_rates(model, X + 7*i, V + 6*i, rates + 6*i);
+        const int code = tripod_3prs_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6819,18 +6889,18 @@ size_t tripod_3prs_joint_accelerations_batch(const tripod_3prs_model *model, siz
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 6*i, codes);
+        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
-                    accelerations + 6*(i + k));
+                codes[k] = tripod_3prs_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    accelerations + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_joint_accelerations(model, X + 7*i, V + 6*i, A + 6*i, accelerations +
-            6*i);
+        const int code = tripod_3prs_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6851,17 +6921,18 @@ size_t tripod_3prs_dynamics_batch(const tripod_3prs_model *model, size_t n, cons
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        dynamics_lanes(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 18*i, codes);
+        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i +
-                    k), H + 18*(i + k));
+                codes[k] = tripod_3prs_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
+                    NV*(i + k), H + NV*NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_dynamics(model, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 18*i);
+        const int code = tripod_3prs_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
+            NV*NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6883,19 +6954,19 @@ size_t tripod_3prs_inverse_dynamics_batch(const tripod_3prs_model *model, size_t
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        inverse_dynamics_lanes(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau + 3*i,
-            lambda + 3*i, codes);
+        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+            NU*i, lambda + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k), wrench
-                    ? wrench + 6*(i + k) : NULL, tau + 3*(i + k), lambda + 3*(i + k));
+                codes[k] = tripod_3prs_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
+                    wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k), lambda + NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_inverse_dynamics(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench +
-            6*i : NULL, tau + 3*i, lambda + 3*i);
+        const int code = tripod_3prs_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
+            + NW*i : NULL, tau + NU*i, lambda + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6917,19 +6988,19 @@ size_t tripod_3prs_forward_dynamics_batch(const tripod_3prs_model *model, size_t
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        forward_dynamics_lanes(model, X + 7*i, V + 6*i, tau + 3*i, wrench ? wrench + 6*i : NULL, A + 6*i,
-            lambda + 3*i, codes);
+        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+            NV*i, lambda + NC*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 3*(i + k),
-                    wrench ? wrench + 6*(i + k) : NULL, A + 6*(i + k), lambda + 3*(i + k));
+                codes[k] = tripod_3prs_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
+                    wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_forward_dynamics(model, X + 7*i, V + 6*i, tau + 3*i, wrench ? wrench
-            + 6*i : NULL, A + 6*i, lambda + 3*i);
+        const int code = tripod_3prs_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
+            wrench + NW*i : NULL, A + NV*i, lambda + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6954,8 +7025,8 @@ size_t tripod_3prs_complete_acceleration_batch(const tripod_3prs_model *model, s
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, wrench ?
-            wrench + 6*i : NULL, completed + 6*i);
+        const int code = tripod_3prs_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
+            wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6976,8 +7047,8 @@ size_t tripod_3prs_leg_reactions_batch(const tripod_3prs_model *model, size_t n,
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_leg_reactions(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i
-            : NULL, forces + 9*i);
+        const int code = tripod_3prs_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
+            NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6997,7 +7068,7 @@ size_t tripod_3prs_energy_batch(const tripod_3prs_model *model, size_t n, const 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_energy(model, X + 7*i, V + 6*i, kinetic + 1*i, potential + 1*i);
+        const int code = tripod_3prs_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7016,7 +7087,7 @@ size_t tripod_3prs_condition_batch(const tripod_3prs_model *model, size_t n, con
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_condition(model, X + 7*i, sigma + 3*i, legs + 3*i);
+        const int code = tripod_3prs_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7035,7 +7106,7 @@ size_t tripod_3prs_condition_constrained_batch(const tripod_3prs_model *model, s
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_condition_constrained(model, X + 7*i, sigma + 6*i, legs + 3*i);
+        const int code = tripod_3prs_condition_constrained(model, X + NQ*i, sigma + 6*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7054,7 +7125,7 @@ size_t tripod_3prs_forward_kinematics_batch(const tripod_3prs_model *model, size
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_forward_kinematics(model, q_actuated + 3*i, X0 + 7*i, X + 7*i);
+        const int code = tripod_3prs_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7073,7 +7144,7 @@ size_t tripod_3prs_project_batch(const tripod_3prs_model *model, size_t n, const
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_project(model, X + 7*i, projected + 7*i);
+        const int code = tripod_3prs_project(model, X + NQ*i, projected + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7094,7 +7165,7 @@ size_t tripod_3prs_dissipation_batch(const tripod_3prs_model *model, size_t n, c
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_dissipation(model, X + 7*i, V + 6*i, dissipation + 1*i);
+        const int code = tripod_3prs_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7114,16 +7185,16 @@ size_t tripod_3prs_momentum_batch(const tripod_3prs_model *model, size_t n, cons
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        momentum_lanes(model, X + 7*i, V + 6*i, momentum + 6*i, codes);
+        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_momentum(model, X + 7*(i + k), V + 6*(i + k), momentum + 6*(i + k));
+                codes[k] = tripod_3prs_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_momentum(model, X + 7*i, V + 6*i, momentum + 6*i);
+        const int code = tripod_3prs_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7143,16 +7214,16 @@ size_t tripod_3prs_joint_margins_batch(const tripod_3prs_model *model, size_t n,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        joint_margins_lanes(model, X + 7*i, margins + 6*i, codes);
+        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_joint_margins(model, X + 7*(i + k), margins + 6*(i + k));
+                codes[k] = tripod_3prs_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_joint_margins(model, X + 7*i, margins + 6*i);
+        const int code = tripod_3prs_joint_margins(model, X + NQ*i, margins + NJ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7172,16 +7243,16 @@ size_t tripod_3prs_within_limits_batch(const tripod_3prs_model *model, size_t n,
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        within_limits_lanes(model, X + 7*i, within + 1*i, codes);
+        within_limits_lanes(model, X + NQ*i, within + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_within_limits(model, X + 7*(i + k), within + 1*(i + k));
+                codes[k] = tripod_3prs_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_within_limits(model, X + 7*i, within + 1*i);
+        const int code = tripod_3prs_within_limits(model, X + NQ*i, within + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7201,16 +7272,16 @@ size_t tripod_3prs_actuator_positions_batch(const tripod_3prs_model *model, size
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_positions_lanes(model, X + 7*i, q + 3*i, codes);
+        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_actuator_positions(model, X + 7*(i + k), q + 3*(i + k));
+                codes[k] = tripod_3prs_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_actuator_positions(model, X + 7*i, q + 3*i);
+        const int code = tripod_3prs_actuator_positions(model, X + NQ*i, q + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7230,16 +7301,16 @@ size_t tripod_3prs_actuator_rates_batch(const tripod_3prs_model *model, size_t n
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_rates_lanes(model, X + 7*i, V + 6*i, rates + 3*i, codes);
+        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_actuator_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 3*(i + k));
+                codes[k] = tripod_3prs_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_actuator_rates(model, X + 7*i, V + 6*i, rates + 3*i);
+        const int code = tripod_3prs_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7260,18 +7331,18 @@ size_t tripod_3prs_actuator_accelerations_batch(const tripod_3prs_model *model, 
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        actuator_accelerations_lanes(model, X + 7*i, V + 6*i, A + 6*i, accelerations + 3*i, codes);
+        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_actuator_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
-                    accelerations + 3*(i + k));
+                codes[k] = tripod_3prs_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
+                    k), accelerations + NU*(i + k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_actuator_accelerations(model, X + 7*i, V + 6*i, A + 6*i,
-            accelerations + 3*i);
+        const int code = tripod_3prs_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
+            accelerations + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7292,17 +7363,17 @@ size_t tripod_3prs_power_batch(const tripod_3prs_model *model, size_t n, const t
     size_t failed = 0, i = 0;
     for (; LANES > 1 && i + LANES <= n; i += LANES) {
         int codes[LANES];
-        power_lanes(model, X + 7*i, V + 6*i, tau + 3*i, power + 1*i, codes);
+        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
         for (size_t k = 0; k < LANES; ++k) {
             if (codes[k] != OK) {
-                codes[k] = tripod_3prs_power(model, X + 7*(i + k), V + 6*(i + k), tau + 3*(i + k), power + 1*(i +
+                codes[k] = tripod_3prs_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
                     k));
             }
         }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
-        const int code = tripod_3prs_power(model, X + 7*i, V + 6*i, tau + 3*i, power + 1*i);
+        const int code = tripod_3prs_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7320,7 +7391,7 @@ size_t tripod_3prs_rotation_batch(size_t n, const tripod_3prs_real *X, tripod_3p
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_rotation(X + 7*i, R + 9*i);
+        const int code = tripod_3prs_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7338,7 +7409,7 @@ size_t tripod_3prs_pose_batch(size_t n, const tripod_3prs_real *t, const tripod_
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_pose(t + 3*i, R + 9*i, X + 7*i);
+        const int code = tripod_3prs_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7357,7 +7428,7 @@ size_t tripod_3prs_X_dot_batch(size_t n, const tripod_3prs_real *X, const tripod
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_X_dot(X + 7*i, V + 6*i, X_dot + 7*i);
+        const int code = tripod_3prs_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7376,7 +7447,7 @@ size_t tripod_3prs_pose_from_rpy_batch(size_t n, const tripod_3prs_real *t, cons
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_pose_from_rpy(t + 3*i, rpy + 3*i, X + 7*i);
+        const int code = tripod_3prs_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7395,7 +7466,7 @@ size_t tripod_3prs_retract_batch(size_t n, const tripod_3prs_real *X, const trip
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_retract(X + 7*i, step + 6*i, X_moved + 7*i);
+        const int code = tripod_3prs_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7414,7 +7485,7 @@ size_t tripod_3prs_difference_batch(size_t n, const tripod_3prs_real *X0, const 
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_difference(X0 + 7*i, X1 + 7*i, step + 6*i);
+        const int code = tripod_3prs_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -7433,7 +7504,7 @@ size_t tripod_3prs_interpolate_batch(size_t n, const tripod_3prs_real *X0, const
 {
     size_t failed = 0, i = 0;
     for (; i < n; ++i) {
-        const int code = tripod_3prs_interpolate(X0 + 7*i, X1 + 7*i, s + 1*i, X + 7*i);
+        const int code = tripod_3prs_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

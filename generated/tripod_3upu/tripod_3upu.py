@@ -99,7 +99,7 @@ _SHAPES = {  # of the arrays that functions give
     "qdd": (9,),
     "constraints": (3,),
     "leg_force": (3, 6),
-    "drive": (3, 6),
+    "actuator": (3, 6),
     "constraint_direction": (3, 6),
     "potential": (1,),
     "lengths": (2,),
@@ -152,7 +152,7 @@ _leg_force_upu = (
     [4, 10, 16],
     [5, 11, 17],
 )
-_drive_upu = (
+_actuator_upu = (
     [0, 6, 12],
     [1, 7, 13],
     [2, 8, 14],
@@ -882,50 +882,41 @@ def _prepare(p):
     }
 
 
-_FEW, _BLOCK = 8, 1024  # single states up to here; states per block beyond
+_FEW, _MANY = 24, 2048  # one state after another up to here; recorded from here on
+_BLOCK = 4096  # states
 _SCRATCH = 31 << 20  # bytes
 
 
 def _constants(p, name):
-    """Prepared values of a function: floats, and those of each loop over legs for both modes."""
+    """Prepared values of a function, and for each loop over legs (leg, its values): floats."""
     if name not in p._cache:
         shared, loops = p._prepared()[name]
-        rows, columns = [], []
+        rows = []
         for count, values in loops:
-            table = [np.broadcast_to(v, count) for v in values]
-            rows.append([(leg, tuple(float(v[leg]) for v in table)) for leg in range(count)])
-            columns.append([(slice(0, count), tuple(v[:, None] for v in table))])
-        p._cache[name] = tuple(map(float, shared)), rows, columns
+            table = [np.broadcast_to(v, count).tolist() for v in values]
+            rows.append([(leg, tuple(v[leg] for v in table)) for leg in range(count)])
+        p._cache[name] = tuple(map(float, shared)), rows
     return p._cache[name]
-
-
-def _sqrt(x):
-    return x**0.5 if x >= 0.0 else np.nan
 
 
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
-    sqrt = staticmethod(_sqrt)
+    sqrt = staticmethod(math.sqrt)
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
     least = staticmethod(lambda x, y: float(np.minimum(x, y)))
-    every = staticmethod(lambda leg, good: good)
 
-    def __init__(self, p, states):
+    def __init__(self, p, states, kept=None):
         self.p, self.states = p, states
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)[:2]
+        return _constants(self.p, name)
 
     def zeros(self, name):
         return [0.0] * math.prod(_SHAPES[name])
-
-    def added(self, sums, leg, terms):
-        """Sums over the legs so far."""
-        return [a + b for a, b in zip(sums, terms)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -937,7 +928,7 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, ValueError):
             ok = False
         if ok and all(all(map(math.isfinite, array)) for array in arrays):
             return arrays
@@ -945,54 +936,66 @@ class _Floats:
 
 
 class _Arrays:
-    """Functions of many states at once: arrays (states,), and (legs, states)."""
+    """Functions of many states at once, in arrays (states,).
+
+    Attributes:
+        kept: replays, by their place among those of a block, for other blocks of the same size;
+            None where there are too few states for it to pay to record.
+    """
 
     sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
-    def __init__(self, p, states):
-        self.p, self.states = p, states
+    def __init__(self, p, states, kept=None):
+        self.p, self.states, self.kept, self.done = p, states, kept, 0
 
     def constants(self, name):
-        """Shared values, and (all legs, their values) once for each loop."""
-        shared, _, columns = _constants(self.p, name)
-        return shared, columns
+        """Shared values, and (leg, its values) for every leg of each loop.
+
+        As arrays without dimensions: beside arrays they are faster than floats.
+        """
+        if (name, "arrays") not in self.p._cache:
+            shared, loops = _constants(self.p, name)
+            rows = [[(leg, tuple(map(np.array, k))) for leg, k in legs] for legs in loops]
+            self.p._cache[name, "arrays"] = tuple(map(np.array, shared)), rows
+        return self.p._cache[name, "arrays"]
 
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def every(self, legs, good):
-        """Whether it holds for all legs."""
-        return np.logical_and.reduce(np.broadcast_to(good, (legs.stop, self.states)), axis=0)
-
-    def added(self, sums, legs, terms):
-        """Sums over the legs, all at once."""
-        shape = (legs.stop, self.states)
-        return [np.add.reduce(np.broadcast_to(t, shape), axis=0) for t in terms]
+    def computed(self, function, names, vectors):
+        """Flags and arrays (*shape, states) of a function."""
+        if self.kept is None:
+            flags, arrays = function(self, *vectors)
+        else:
+            if self.done not in self.kept:
+                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+            flags, arrays = self.kept[self.done].run(vectors)
+            self.done += 1
+        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = function(self, *vectors)
-        for a in arrays:
-            ok = ok & np.isfinite(a).all(axis=0)
+        ok, arrays = self.computed(function, names, vectors)
+        ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
-                a[:, ~ok] = np.nan
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+                a[..., ~ok] = np.nan
+        return arrays
 
 
 class _Judged(_Arrays):
     """The same, and why a state is impossible."""
 
-    def __init__(self, p, states):
-        super().__init__(p, states)
+    def __init__(self, p, states, kept=None):
+        super().__init__(p, states, kept)
         self.failed = {code: np.zeros(states, dtype=bool) for code in (3, 4, 1, 2)}
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = function(self, *vectors)
+        (valid, reached, clear), arrays = self.computed(function, names, vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
-            self.failed[code] |= ~np.broadcast_to(good, self.states)
-        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            self.failed[code] |= np.logical_not(good)
+        return arrays
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1004,9 +1007,9 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
-def _mode(p, states):
+def _mode(p, states, kept=None):
     """The faster way for so many states."""
-    return _Floats(p, states) if 0 < states <= _FEW else _Arrays(p, states)
+    return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
 def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
@@ -1039,26 +1042,27 @@ def _one(steps, p, given, shapes, read, unbounded):
 
 
 def _many(steps, p, lead, given, shapes, read, mode, unbounded):
-    """Results at many states, block by block."""
+    """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
+    size, kept = min(count, _BLOCK), {} if count >= _MANY else None
     flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
-    if count > _BLOCK:
+    if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
         # of intermediate arrays from block to block instead of giving its pages back.
         np.empty(_SCRATCH, dtype=np.uint8)
     with np.errstate(all="ignore"):
-        for first in range(0, max(count, 1), _BLOCK):
-            block = slice(first, min(first + _BLOCK, count))
+        for stop in (*range(size, count, max(size, 1)), count):
+            block = slice(stop - size, stop)
             states = [_states_last(v[block]) for v in flat]
-            m, good = mode(p, block.stop - first), possible[block]
+            m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
                 outputs = [np.empty((count, *a.shape[:-1])) for a in found]
-            _all_finite(compress(states, read), good)
+            good &= _finite(compress(states, read), size)
             if mode is _Judged:
                 m.failed[3] |= ~good
-            _all_finite([np.minimum(a, 0.0) for a in found] if unbounded else found, good)
+            good &= _finite([np.minimum(a, 0.0) for a in found] if unbounded else found, size)
             if mode is _Judged:
                 status[block] = m.status(good)
                 good[:] = status[block] == 0
@@ -1075,10 +1079,194 @@ def _states_last(a):
     return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
 
 
-def _all_finite(arrays, good):
-    """Clear the flags of states in which some entry is not finite."""
-    for a in arrays:
-        good &= np.isfinite(a).all(axis=tuple(range(a.ndim - 1)))
+def _finite(arrays, states):
+    """In which states all entries of arrays (*shape, states) are finite."""
+    flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
+    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    if not np.all(good):  # or the sum is too large
+        good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
+    return good
+
+
+def _least(x, y, out):
+    return np.minimum(x, y, out=out)
+
+
+def _both(operation):
+    """An operation of recorded values, and the same with its operands the other way round."""
+    return lambda a, b: a.record.made(operation, a, b), lambda a, b: a.record.made(operation, b, a)
+
+
+class _Recorded:
+    """A value of a function that runs to be recorded."""
+
+    def __init__(self, record, number):
+        self.record, self.number = record, number
+
+    __add__, __radd__ = _both(np.add)
+    __sub__, __rsub__ = _both(np.subtract)
+    __mul__, __rmul__ = _both(np.multiply)
+    __truediv__, __rtruediv__ = _both(np.divide)
+    __and__, __rand__ = _both(np.logical_and)
+    __gt__, __lt__ = _both(np.greater)
+    __ge__, __le__ = _both(np.greater_equal)
+
+    def __neg__(self):
+        return self.record.made(np.negative, self)
+
+    def __abs__(self):
+        return self.record.made(np.absolute, self)
+
+
+class _Record:
+    """The operations of a function, recorded by running it, and where their results stand.
+
+    Results share arrays: what is read for the last time makes room for the next, so that a few
+    arrays do, which stay in the processor's cache.
+
+    Attributes:
+        kinds: of the values, by number: "given", "state", "flag", or "one" for all states.
+        steps: (operation, numbers of its operands and of its result).
+        slots: number of a result -> (kind of array or "out", place).
+        counts: how many arrays there are of every kind.
+    """
+
+    def __init__(self, p, function, sizes):
+        self.p, self.name, self.kinds, self.steps, self.slots = p, None, [], [], {}
+        self.constant, self.literals = [], {}
+        self.inputs = [[self.value("given") for _ in range(size)] for size in sizes]
+        flags, arrays = function(self, *self.inputs)
+        self.is_judged = isinstance(flags, tuple)
+        self.flags = [self.number(flag) for flag in (flags if self.is_judged else (flags,))]
+        self.sizes = [len(array) for array in arrays]
+        for place, value in enumerate(v for array in arrays for v in array):
+            self.store(self.number(value), place)
+        self.counts = self.share()
+
+    # ---- the mode in which the function runs ----
+
+    def sqrt(self, x):
+        return self.made(np.sqrt, x)
+
+    def sin(self, x):
+        return self.made(np.sin, x)
+
+    def cos(self, x):
+        return self.made(np.cos, x)
+
+    def atan2(self, y, x):
+        return self.made(np.arctan2, y, x)
+
+    def least(self, x, y):
+        return self.made(_least, x, y)
+
+    def zeros(self, name):
+        return [0.0] * math.prod(_SHAPES[name])
+
+    def constants(self, name):
+        """Shared values, and (leg, its values) for every leg of each loop."""
+        self.name, (shared, loops) = name, _constants(self.p, name)
+        shared = self.named(shared)
+        return shared, [[(leg, self.named(k)) for leg, k in legs] for legs in loops]
+
+    # ---- what is recorded ----
+
+    def named(self, values):
+        """Values for constants."""
+        found = [self.value("one") for _ in values]
+        self.constant += [v.number for v in found]
+        return found
+
+    def value(self, kind):
+        self.kinds.append(kind)
+        return _Recorded(self, len(self.kinds) - 1)
+
+    def number(self, value):
+        """Number of a value, which may be a literal."""
+        if isinstance(value, _Recorded):
+            return value.number
+        if value not in self.literals:
+            self.literals[value] = self.value("one").number
+        return self.literals[value]
+
+    def made(self, operation, *operands):
+        """The result of an operation."""
+        numbers = [self.number(operand) for operand in operands]
+        if all(self.kinds[n] == "one" for n in numbers):
+            kind = "one"
+        else:
+            kind = "flag" if operation in _OF_FLAGS else "state"
+        result = self.value(kind)
+        self.steps.append((operation, [*numbers, result.number]))
+        return result
+
+    def store(self, number, place):
+        """Make a value an entry of the function's arrays: where it is computed, or as a copy."""
+        if self.kinds[number] != "state" or number in self.slots:
+            copy = self.value("state").number
+            self.steps.append((np.positive, [number, copy]))
+            number = copy
+        self.slots[number] = "out", place
+
+    def share(self):
+        """Give results their places; how many there are of each kind."""
+        last = {n: k for k, (_, (*operands, _)) in enumerate(self.steps) for n in operands}
+        last.update(dict.fromkeys(self.flags, len(self.steps)))
+        counts, free = dict.fromkeys(("state", "flag", "one"), 0), {"state": [], "flag": [], "one": []}
+        for k, (_, (*operands, result)) in enumerate(self.steps):
+            for n in dict.fromkeys(operands):
+                kind, place = self.slots.get(n, ("given", 0))
+                if last[n] == k and kind in free:
+                    free[kind].append(place)
+            if result not in self.slots:
+                kind = self.kinds[result]
+                if not free[kind]:
+                    free[kind].append(counts[kind])
+                    counts[kind] += 1
+                self.slots[result] = kind, free[kind].pop()
+        return counts
+
+
+_OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
+_RECORDS = {}  # by function
+
+
+class _Replay:
+    """A record on arrays of so many states, which are made once."""
+
+    def __init__(self, p, function, sizes, states):
+        if function not in _RECORDS:
+            _RECORDS[function] = _Record(p, function, sizes)
+        r = _RECORDS[function]
+        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
+        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
+        made["out"] = _rows(sum(r.sizes), states)
+        self.inputs = [_rows(size, states) for size in sizes]
+        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        at = {number: np.array(value) for value, number in r.literals.items()}
+        for values, given in zip(r.inputs, self.inputs):
+            at |= {v.number: row for v, row in zip(values, given)}
+        if r.name is not None:
+            shared, loops = _constants(p, r.name)
+            values = sum((k for legs in loops for _, k in legs), shared)
+            at |= {number: np.array(value) for number, value in zip(r.constant, values)}
+        at |= {number: made[kind][place] for number, (kind, place) in r.slots.items()}
+        self.steps = [(f, tuple([at[n] for n in numbers])) for f, numbers in r.steps]
+        flags = [at[n] for n in r.flags]
+        self.flags = flags if r.is_judged else flags[0]
+
+    def run(self, vectors):
+        """Flags and arrays (entries, states) of the function; these are overwritten the next time."""
+        for rows, vector in zip(self.inputs, vectors):
+            rows[:] = vector
+        for operation, operands in self.steps:
+            operation(*operands)
+        return self.flags, self.arrays
+
+
+def _rows(count, states, kind=float):
+    """Rows of so many states, a cache line apart from each other."""
+    return np.empty((count, states + 8), dtype=kind)[:, :states]
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1498,7 +1686,12 @@ def _run_dynamics(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 27
+    (
+    M_tt_upu_xx, M_tt_xy, M_tt_xz, M_tt_upu_yy, M_tt_yz, M_tt_upu_zz, M_ta_xx, M_ta_upu_xy,
+        M_ta_upu_xz, M_ta_upu_yx, M_ta_yy, M_ta_upu_yz, M_ta_upu_zx, M_ta_upu_zy, M_ta_zz,
+        M_aa_upu_xx, M_aa_upu_xy, M_aa_upu_xz, M_aa_upu_yy, M_aa_upu_yz, M_aa_upu_zz, Z_t_upu_x,
+        Z_t_upu_y, Z_t_upu_z, Z_a_upu_x, Z_a_upu_y, Z_a_upu_z,
+    ) = [0.0] * 27
     for leg, k in legs[0]:
         (
         upu_J_group_2_in_axes2_xx, upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz,
@@ -1630,7 +1823,7 @@ def _run_dynamics(m, X, V):
         )
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
         upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
@@ -1834,7 +2027,7 @@ def _run_dynamics(m, X, V):
             upu_J_group_2_in_axes2_xy*upu_d_alpha_1_t -
             upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z)
         )
-        # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*upu_w_1_in_axes2_z
         upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*upu_w_1_in_axes2_z
         upu_dalpha_G_in_axes2_yx = (
@@ -1847,16 +2040,16 @@ def _run_dynamics(m, X, V):
             upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
             upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_y*upu_root_2)
         )
-        # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_d_G_in_axes2_yz = (
         inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
             upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
             upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_root_2)
         )
-        # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_root_2*upu_mu_2_o_in_axes2_z
         upu_G_o_in_axes2_z = upu_N_2_o_in_axes1_z*upu_w_1_in_axes2_z
-        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         upu_dalpha_G_m1_in_axes2_x = upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1
         upu_dalpha_G_m1_in_axes2_y = upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1
         upu_dalpha_G_m1_y = (
@@ -1867,7 +2060,7 @@ def _run_dynamics(m, X, V):
         axis_x_upu_axes2_z*upu_dalpha_G_m1_in_axes2_x +
             axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y
         )
-        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1
         upu_d_G_m1_in_axes2_y = (
         upu_m1_w_1*(upu_s_2*(inv_upu_root_2*upu_J_group_2_in_axes2_xz - upu_h_3_in_spec2_y) +
@@ -1886,14 +2079,14 @@ def _run_dynamics(m, X, V):
         axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_z*upu_d_G_m1_in_axes2_y +
             axis_z_upu_axes2_z*upu_d_G_m1_in_axes2_z
         )
-        # (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m1_o = upu_N_2_o_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
-        # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x
         upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x
         upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x
         upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y
-        # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y
         # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         upu_dalpha_c_in_axes2_xy = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y
@@ -2073,18 +2266,43 @@ def _run_dynamics(m, X, V):
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         upu_gamma_c1 = upu_nu_1 - upu_n_c_t*upu_rel_o_in_axes2_z
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
+            _TOLERANCE * 0.8)
         )
-        sums = m.added(sums, leg, (
-        upu_Q_xx, upu_Q_xy, upu_Q_xz, upu_Q_yy, upu_Q_yz, upu_Q_zz, upu_M_ta_t_10,
-            upu_M_ta_t_11, upu_M_ta_t_12, upu_M_ta_t_13, upu_M_ta_t_14, upu_M_ta_t_15,
-            upu_M_ta_t_16, upu_M_ta_t_17, upu_M_ta_t_18, upu_M_aa_t, upu_M_aa_t_2,
-            upu_M_aa_t_3, upu_M_aa_t_4, upu_M_aa_t_5, upu_M_aa_t_6, upu_U_x, upu_U_y, upu_U_z,
-            upu_Z_a_t, upu_Z_a_t_2, upu_Z_a_t_3,
-        ))
+        # (M_tt) translational block of M
+        M_tt_upu_xx += upu_Q_xx
+        M_tt_xy += upu_Q_xy
+        M_tt_xz += upu_Q_xz
+        M_tt_upu_yy += upu_Q_yy
+        M_tt_yz += upu_Q_yz
+        M_tt_upu_zz += upu_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += upu_M_ta_t_10
+        M_ta_upu_xy += upu_M_ta_t_11
+        M_ta_upu_xz += upu_M_ta_t_12
+        M_ta_upu_yx += upu_M_ta_t_13
+        M_ta_yy += upu_M_ta_t_14
+        M_ta_upu_yz += upu_M_ta_t_15
+        M_ta_upu_zx += upu_M_ta_t_16
+        M_ta_upu_zy += upu_M_ta_t_17
+        M_ta_zz += upu_M_ta_t_18
+        # (M_aa) rotational block of M
+        M_aa_upu_xx += upu_M_aa_t
+        M_aa_upu_xy += upu_M_aa_t_2
+        M_aa_upu_xz += upu_M_aa_t_3
+        M_aa_upu_yy += upu_M_aa_t_4
+        M_aa_upu_yz += upu_M_aa_t_5
+        M_aa_upu_zz += upu_M_aa_t_6
+        # (Z_t) translational part of Z
+        Z_t_upu_x += upu_U_x
+        Z_t_upu_y += upu_U_y
+        Z_t_upu_z += upu_U_z
+        # (Z_a) rotational part of Z
+        Z_a_upu_x += upu_Z_a_t
+        Z_a_upu_y += upu_Z_a_t_2
+        Z_a_upu_z += upu_Z_a_t_3
         # (upu-w_3) force part of reciprocal wrench 3
         out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
         out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
@@ -2093,7 +2311,7 @@ def _run_dynamics(m, X, V):
         out_H[_H_upu[3][leg]] = upu_H_a_3_x
         out_H[_H_upu[4][leg]] = upu_H_a_3_y
         out_H[_H_upu[5][leg]] = upu_H_a_3_z
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
         out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
         out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
@@ -2103,12 +2321,6 @@ def _run_dynamics(m, X, V):
         out_Hk[_Hk_upu[5][leg]] = upu_Hk_a_1_z
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_upu[0][leg]] = upu_gamma_c1
-    (
-    M_tt_upu_xx, M_tt_xy, M_tt_xz, M_tt_upu_yy, M_tt_yz, M_tt_upu_zz, M_ta_xx, M_ta_upu_xy,
-        M_ta_upu_xz, M_ta_upu_yx, M_ta_yy, M_ta_upu_yz, M_ta_upu_zx, M_ta_upu_zy, M_ta_zz,
-        M_aa_upu_xx, M_aa_upu_xy, M_aa_upu_xz, M_aa_upu_yy, M_aa_upu_yz, M_aa_upu_zz, Z_t_upu_x,
-        Z_t_upu_y, Z_t_upu_z, Z_a_upu_x, Z_a_upu_y, Z_a_upu_z,
-    ) = sums
     # (M_tt) translational block of M
     M_tt_xx = M_tt_upu_xx + platform_mass
     M_tt_yy = M_tt_upu_yy + platform_mass
@@ -2251,7 +2463,11 @@ def _run_M(m, X):
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
     J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
     J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
-    sums = [0.0] * 21
+    (
+    M_tt_upu_xx, M_tt_xy, M_tt_xz, M_tt_upu_yy, M_tt_yz, M_tt_upu_zz, M_ta_xx, M_ta_upu_xy,
+        M_ta_upu_xz, M_ta_upu_yx, M_ta_yy, M_ta_upu_yz, M_ta_upu_zx, M_ta_upu_zy, M_ta_zz,
+        M_aa_upu_xx, M_aa_upu_xy, M_aa_upu_xz, M_aa_upu_yy, M_aa_upu_yz, M_aa_upu_zz,
+    ) = [0.0] * 21
     for leg, k in legs[0]:
         (
         upu_J_group_2_in_axes2_xx, upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz,
@@ -2370,7 +2586,7 @@ def _run_M(m, X):
         )
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
         upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
@@ -2429,7 +2645,7 @@ def _run_M(m, X):
             upu_J_group_2_in_axes2_xy*upu_d_alpha_1_t -
             upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z)
         )
-        # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*upu_w_1_in_axes2_z
         upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*upu_w_1_in_axes2_z
         upu_dalpha_G_in_axes2_yx = (
@@ -2442,13 +2658,13 @@ def _run_M(m, X):
             upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
             upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_y*upu_root_2)
         )
-        # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_d_G_in_axes2_yz = (
         inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
             upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
             upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_root_2)
         )
-        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         upu_dalpha_G_m1_in_axes2_x = upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1
         upu_dalpha_G_m1_in_axes2_y = upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1
         upu_dalpha_G_m1_y = (
@@ -2459,7 +2675,7 @@ def _run_M(m, X):
         axis_x_upu_axes2_z*upu_dalpha_G_m1_in_axes2_x +
             axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y
         )
-        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1
         upu_d_G_m1_in_axes2_y = (
         upu_m1_w_1*(upu_s_2*(inv_upu_root_2*upu_J_group_2_in_axes2_xz - upu_h_3_in_spec2_y) +
@@ -2478,7 +2694,7 @@ def _run_M(m, X):
         axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_z*upu_d_G_m1_in_axes2_y +
             axis_z_upu_axes2_z*upu_d_G_m1_in_axes2_z
         )
-        # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x
         upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x
         upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x
@@ -2623,22 +2839,35 @@ def _run_M(m, X):
             upu_M_ta_t_12*upu_q_y - upu_d_G_m1_x*upu_n_m1_z*upu_q_y
         )
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
+            _TOLERANCE * 0.8)
         )
-        sums = m.added(sums, leg, (
-        upu_Q_xx, upu_Q_xy, upu_Q_xz, upu_Q_yy, upu_Q_yz, upu_Q_zz, upu_M_ta_t_10,
-            upu_M_ta_t_11, upu_M_ta_t_12, upu_M_ta_t_13, upu_M_ta_t_14, upu_M_ta_t_15,
-            upu_M_ta_t_16, upu_M_ta_t_17, upu_M_ta_t_18, upu_M_aa_t, upu_M_aa_t_2,
-            upu_M_aa_t_3, upu_M_aa_t_4, upu_M_aa_t_5, upu_M_aa_t_6,
-        ))
-    (
-    M_tt_upu_xx, M_tt_xy, M_tt_xz, M_tt_upu_yy, M_tt_yz, M_tt_upu_zz, M_ta_xx, M_ta_upu_xy,
-        M_ta_upu_xz, M_ta_upu_yx, M_ta_yy, M_ta_upu_yz, M_ta_upu_zx, M_ta_upu_zy, M_ta_zz,
-        M_aa_upu_xx, M_aa_upu_xy, M_aa_upu_xz, M_aa_upu_yy, M_aa_upu_yz, M_aa_upu_zz,
-    ) = sums
+        # (M_tt) translational block of M
+        M_tt_upu_xx += upu_Q_xx
+        M_tt_xy += upu_Q_xy
+        M_tt_xz += upu_Q_xz
+        M_tt_upu_yy += upu_Q_yy
+        M_tt_yz += upu_Q_yz
+        M_tt_upu_zz += upu_Q_zz
+        # (M_ta) coupling block of M
+        M_ta_xx += upu_M_ta_t_10
+        M_ta_upu_xy += upu_M_ta_t_11
+        M_ta_upu_xz += upu_M_ta_t_12
+        M_ta_upu_yx += upu_M_ta_t_13
+        M_ta_yy += upu_M_ta_t_14
+        M_ta_upu_yz += upu_M_ta_t_15
+        M_ta_upu_zx += upu_M_ta_t_16
+        M_ta_upu_zy += upu_M_ta_t_17
+        M_ta_zz += upu_M_ta_t_18
+        # (M_aa) rotational block of M
+        M_aa_upu_xx += upu_M_aa_t
+        M_aa_upu_xy += upu_M_aa_t_2
+        M_aa_upu_xz += upu_M_aa_t_3
+        M_aa_upu_yy += upu_M_aa_t_4
+        M_aa_upu_yz += upu_M_aa_t_5
+        M_aa_upu_zz += upu_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_upu_xx + platform_mass
     M_tt_yy = M_tt_upu_yy + platform_mass
@@ -2803,7 +3032,7 @@ def _run_Z(m, X, V):
     Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
     Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
     Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
-    sums = [0.0] * 6
+    Z_t_upu_x, Z_t_upu_y, Z_t_upu_z, Z_a_upu_x, Z_a_upu_y, Z_a_upu_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz, upu_J_group_2_in_axes2_yz,
@@ -2925,7 +3154,7 @@ def _run_Z(m, X, V):
         upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
         upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
@@ -3079,12 +3308,12 @@ def _run_Z(m, X, V):
         # (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_root_2
         upu_N_2_o_in_axes1_z = upu_N_2_o_in_axes2_y*upu_c_2 + upu_mu_2_o_in_axes2_x*upu_s_2
-        # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_root_2*upu_mu_2_o_in_axes2_z
         upu_G_o_in_axes2_z = upu_N_2_o_in_axes1_z*upu_w_1_in_axes2_z
-        # (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m1_o = upu_N_2_o_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
-        # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y
         # (upu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
         upu_c_m_o_in_axes2_x = upu_G_m1_o*upu_end_p1_in_axes2_y
@@ -3115,15 +3344,19 @@ def _run_Z(m, X, V):
             axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*upu_q_y
         )
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
+            _TOLERANCE * 0.8)
         )
-        sums = m.added(sums, leg, (
-        upu_U_x, upu_U_y, upu_U_z, upu_Z_a_t, upu_Z_a_t_2, upu_Z_a_t_3,
-        ))
-    Z_t_upu_x, Z_t_upu_y, Z_t_upu_z, Z_a_upu_x, Z_a_upu_y, Z_a_upu_z = sums
+        # (Z_t) translational part of Z
+        Z_t_upu_x += upu_U_x
+        Z_t_upu_y += upu_U_y
+        Z_t_upu_z += upu_U_z
+        # (Z_a) rotational part of Z
+        Z_a_upu_x += upu_Z_a_t
+        Z_a_upu_y += upu_Z_a_t_2
+        Z_a_upu_z += upu_Z_a_t_3
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_upu_x
     Z_t_y = Z_p_y + Z_t_upu_y
@@ -3257,9 +3490,8 @@ def _run_H(m, X):
         upu_H_a_3_y = upu_q_z*upu_w_3_x - upu_q_x*upu_w_3_z
         upu_H_a_3_z = upu_q_x*upu_w_3_y - upu_q_y*upu_w_3_x
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8)
         )
         # (upu-w_3) force part of reciprocal wrench 3
         out_H[_H_upu[0][leg]] = upu_w_3_x
@@ -3391,7 +3623,7 @@ def _run_Hk(m, X):
         upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
         upu_n_c_t = (
         upu_root_2*(upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2)/upu_volume_c_t
@@ -3433,12 +3665,11 @@ def _run_Hk(m, X):
             axis_y_upu_axes2_y*axis_z_upu_axes2_x) - upu_n_c_t_3*upu_q_x
         )
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8)
         )
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
         out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
         out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
@@ -3620,7 +3851,7 @@ def _run_constraint_bias(m, X, V):
         upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
         upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
@@ -3693,10 +3924,10 @@ def _run_constraint_bias(m, X, V):
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         upu_gamma_c1 = upu_nu_1 - upu_n_c_t*upu_rel_o_in_axes2_z
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
+            _TOLERANCE * 0.8)
         )
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_upu[0][leg]] = upu_gamma_c1
@@ -3848,7 +4079,7 @@ def _run_required(m, X, V, A):
     mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
     mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
     mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
-    sums = [0.0] * 6
+    R_t_t, R_t_t_2, R_t_t_3, R_a_upu_x, R_a_upu_y, R_a_upu_z = [0.0] * 6
     for leg, k in legs[0]:
         (
         upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz, upu_J_group_2_in_axes2_yz,
@@ -3970,7 +4201,7 @@ def _run_required(m, X, V, A):
         upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
         upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
@@ -4125,12 +4356,12 @@ def _run_required(m, X, V, A):
         # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_root_2
         upu_N_2_in_axes1_z = upu_N_2_in_axes2_y*upu_c_2 + upu_mu_2_in_axes2_x*upu_s_2
-        # (upu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_root_2*upu_mu_2_in_axes2_z
         upu_G_in_axes2_z = upu_N_2_in_axes1_z*upu_w_1_in_axes2_z
-        # (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m1 = upu_N_2_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
-        # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m_in_axes2_y = upu_G_m1*upu_n_m1_in_axes2_y
         # (upu-c) leg force on the platform without actuation and without the mass at the connection point
         upu_c_x = (
@@ -4178,14 +4409,19 @@ def _run_required(m, X, V, A):
             axis_x_upu_axes2_z*upu_end_p1_in_axes2_y - upu_n_c_t_3*upu_q_x
         )
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
+            _TOLERANCE * 0.8)
         )
-        sums = m.added(sums, leg, (
-        upu_c_x, upu_c_y, upu_c_z, upu_R_a_t, upu_R_a_t_2, upu_R_a_t_3,
-        ))
+        # (R_t) force that actuators and external wrench must give
+        R_t_t += upu_c_x
+        R_t_t_2 += upu_c_y
+        R_t_t_3 += upu_c_z
+        # (R_a) moment that actuators and external wrench must give
+        R_a_upu_x += upu_R_a_t
+        R_a_upu_y += upu_R_a_t_2
+        R_a_upu_z += upu_R_a_t_3
         # (upu-w_3) force part of reciprocal wrench 3
         out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
         out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
@@ -4194,7 +4430,7 @@ def _run_required(m, X, V, A):
         out_H[_H_upu[3][leg]] = upu_H_a_3_x
         out_H[_H_upu[4][leg]] = upu_H_a_3_y
         out_H[_H_upu[5][leg]] = upu_H_a_3_z
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
         out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
         out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
@@ -4202,7 +4438,6 @@ def _run_required(m, X, V, A):
         out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
         out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
         out_Hk[_Hk_upu[5][leg]] = upu_Hk_a_1_z
-    R_t_t, R_t_t_2, R_t_t_3, R_a_upu_x, R_a_upu_y, R_a_upu_z = sums
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t
     R_t_y = f_p_y - R_t_t_2
@@ -4311,8 +4546,8 @@ def _run_inverse_kinematics(m, X):
         inv_upu_root_2 = 1.0/upu_root_2
         upu_q_2 = atan2(-inv_upu_root_2*upu_xi_1_in_axes1_z, inv_upu_root_2*upu_root_1)
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (upu-q_1) displacement of joint 1
         out_q[_q_upu[0][leg]] = upu_q_1
@@ -4491,7 +4726,7 @@ def _run_joint_rates(m, X, V):
         upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
         upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
@@ -4511,10 +4746,10 @@ def _run_joint_rates(m, X, V):
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
+            _TOLERANCE * 0.8)
         )
         # (upu-qd_1) rate of joint 1
         out_qd[_qd_upu[0][leg]] = upu_qd_1
@@ -4709,7 +4944,7 @@ def _run_joint_accelerations(m, X, V, A):
         upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
         upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
@@ -4800,10 +5035,10 @@ def _run_joint_accelerations(m, X, V, A):
             upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
         )
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
+            _TOLERANCE * 0.8)
         )
         # (upu-qdd_1) acceleration of joint 1
         out_qdd[_qdd_upu[0][leg]] = upu_qdd_1
@@ -4888,7 +5123,7 @@ def _run_constraints(m, X):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-phi_c1) angle by which the leg misses the platform, about a direction left out
+        # (upu-phi_c1) loop-closure residual about the constraint moment
         upu_phi_c1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
@@ -4907,8 +5142,8 @@ def _run_constraints(m, X):
         upu_end_p1_in_axes2_z = (
         inv_upu_root_1*upu_phi_c1_t_2*upu_px_1 - inv_upu_root_1*upu_phi_c1_t*upu_py_1
         )
-        ok = ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
-        # (upu-phi_c1) angle by which the leg misses the platform, about a direction left out
+        ok = ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        # (upu-phi_c1) loop-closure residual about the constraint moment
         out_constraints[_constraints_upu[0][leg]] = -upu_end_p1_in_axes2_z
     return ok, (out_constraints,)
 
@@ -4980,7 +5215,7 @@ def _run_legs(m, X, V, A):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_leg_force = m.zeros("leg_force")
-    out_drive = m.zeros("drive")
+    out_actuator = m.zeros("actuator")
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
@@ -5112,7 +5347,7 @@ def _run_legs(m, X, V, A):
         )
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
         upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
@@ -5267,12 +5502,12 @@ def _run_legs(m, X, V, A):
         # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_root_2
         upu_N_2_in_axes1_z = upu_N_2_in_axes2_y*upu_c_2 + upu_mu_2_in_axes2_x*upu_s_2
-        # (upu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_root_2*upu_mu_2_in_axes2_z
         upu_G_in_axes2_z = upu_N_2_in_axes1_z*upu_w_1_in_axes2_z
-        # (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        # (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m1 = upu_N_2_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
-        # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m_in_axes2_y = upu_G_m1*upu_n_m1_in_axes2_y
         # (upu-c) leg force on the platform without actuation and without the mass at the connection point
         upu_c_x = (
@@ -5293,10 +5528,10 @@ def _run_legs(m, X, V, A):
         upu_c_m_y = axis_x_upu_axes2_y*upu_c_m_in_axes2_x - axis_y_upu_axes2_y*upu_G_m_in_axes2_y
         upu_c_m_z = axis_x_upu_axes2_z*upu_c_m_in_axes2_x - axis_y_upu_axes2_z*upu_G_m_in_axes2_y
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
+            _TOLERANCE * 0.8)
         )
         # (upu-c) leg force on the platform without actuation and without the mass at the connection point
         out_leg_force[_leg_force_upu[0][leg]] = upu_c_x
@@ -5307,10 +5542,10 @@ def _run_legs(m, X, V, A):
         out_leg_force[_leg_force_upu[4][leg]] = upu_c_m_y
         out_leg_force[_leg_force_upu[5][leg]] = upu_c_m_z
         # (upu-w_3) force part of reciprocal wrench 3
-        out_drive[_drive_upu[0][leg]] = axis_x_upu_axes2_x
-        out_drive[_drive_upu[1][leg]] = axis_x_upu_axes2_y
-        out_drive[_drive_upu[2][leg]] = axis_x_upu_axes2_z
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        out_actuator[_actuator_upu[0][leg]] = axis_x_upu_axes2_x
+        out_actuator[_actuator_upu[1][leg]] = axis_x_upu_axes2_y
+        out_actuator[_actuator_upu[2][leg]] = axis_x_upu_axes2_z
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         out_constraint_direction[_constraint_direction_upu[0][leg]] = -upu_n_c_t_2
         out_constraint_direction[_constraint_direction_upu[1][leg]] = -upu_n_c_t_3
         out_constraint_direction[_constraint_direction_upu[2][leg]] = -upu_n_c_t_4
@@ -5318,7 +5553,7 @@ def _run_legs(m, X, V, A):
         out_constraint_direction[_constraint_direction_upu[3][leg]] = upu_n_m1_x
         out_constraint_direction[_constraint_direction_upu[4][leg]] = upu_n_m1_y
         out_constraint_direction[_constraint_direction_upu[5][leg]] = upu_n_m1_z
-    return ok, (out_leg_force, out_drive, out_constraint_direction,)
+    return ok, (out_leg_force, out_actuator, out_constraint_direction,)
 
 
 # potential: 171 mul, 135 add, 6 div, 6 sqrt, 0 trig
@@ -5373,7 +5608,7 @@ def _run_potential(m, X):
         R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
         R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z)
     )
-    sums = [0.0] * 1
+    potential_upu, = [0.0] * 1
     for leg, k in legs[0]:
         (
         upu_acc_3_t, upu_acc_3_t_2, upu_acc_3_t_3, upu_base_frame_xx, upu_base_frame_xy,
@@ -5445,13 +5680,11 @@ def _run_potential(m, X):
             upu_link3_mass*(upu_b_in_spec2_x + upu_root_2))
         )
         ok = (
-        ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
+        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
+            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
-        sums = m.added(sums, leg, (
-        upu_potential_t_6,
-        ))
-    potential_upu, = sums
+        # (potential) potential energy
+        potential_upu += upu_potential_t_6
     # (potential) potential energy
     potential = potential_upu - potential_t
     # (potential) potential energy
@@ -5510,7 +5743,7 @@ def _run_condition(m, X):
     out_reach = m.zeros("reach")
     # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
-    sums = [0.0] * 1
+    spread_upu, = [0.0] * 1
     for leg, k in legs[0]:
         (
         upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
@@ -5591,7 +5824,7 @@ def _run_condition(m, X):
         upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
         axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
@@ -5616,7 +5849,7 @@ def _run_condition(m, X):
         upu_w_3_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
         upu_w_3_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
         upu_w_3_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
-        # (upu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_pivot_size = abs(upu_rho2_1)
         upu_pivot_size_2 = abs(upu_rho2_2)
         upu_pivot_size_3 = abs(upu_volume_c_t)
@@ -5651,14 +5884,13 @@ def _run_condition(m, X):
         upu_spread_t*upu_spread_t + upu_spread_t_2*upu_spread_t_2 + upu_spread_t_3*upu_spread_t_3
         )
         clear = (
-        clear & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        clear & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8)
         )
-        sums = m.added(sums, leg, (
-        upu_spread_t_4,
-        ))
+        # (spread) rms distance of the platform points from their centroid
+        spread_upu += upu_spread_t_4
         # (upu-w_3) force part of reciprocal wrench 3
         out_H[_H_upu[0][leg]] = upu_w_3_x
         out_H[_H_upu[1][leg]] = upu_w_3_y
@@ -5667,7 +5899,7 @@ def _run_condition(m, X):
         out_H[_H_upu[3][leg]] = upu_H_a_3_x
         out_H[_H_upu[4][leg]] = upu_H_a_3_y
         out_H[_H_upu[5][leg]] = upu_H_a_3_z
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        # (upu-n_c) force part, zero on the manifold, of the constraint moment
         out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
         out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
         out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
@@ -5675,9 +5907,8 @@ def _run_condition(m, X):
         out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
         out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
         out_Hk[_Hk_upu[5][leg]] = upu_Hk_a_1_z
-        # (upu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        # (upu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_upu[0][leg]] = upu_least_pivots
-    spread_upu, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = spread_t*sqrt(spread_upu)
     # (spread) rms distance of the platform points from their centroid
@@ -5744,10 +5975,10 @@ def _steps_dynamics(m, X, V):
 def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    beside_3 = np.concatenate((H, Hk), axis=1)
-    solve_4 = _solve(beside_3, subtract_2)
-    tau, lambda_ = solve_4[:3], solve_4[3:]
+    subtract_1 = required - extend_1
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    solve_1 = _solve(beside_1, subtract_1)
+    tau, lambda_ = solve_1[:3], solve_1[3:]
     return (tau, lambda_,)
 
 
@@ -5756,14 +5987,14 @@ def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H, Hk, constraint_bias,
     ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
     times_1 = np.einsum("ijs,js->is", H, tau)
-    extend_2 = wrench
-    add_3 = times_1 + extend_2
-    subtract_4 = add_3 - Z
-    negative_5 = -constraint_bias
-    join_6 = np.concatenate((subtract_4, negative_5))
-    saddle_7 = _saddle(M, Hk)
-    solve_8 = _solve(saddle_7, join_6)
-    A, lambda_ = solve_8[:6], solve_8[6:]
+    extend_1 = wrench
+    add_1 = times_1 + extend_1
+    subtract_1 = add_1 - Z
+    negative_1 = -constraint_bias
+    join_1 = np.concatenate((subtract_1, negative_1))
+    saddle_1 = _saddle(M, Hk)
+    solve_1 = _solve(saddle_1, join_1)
+    A, lambda_ = solve_1[:6], solve_1[6:]
     return (A, lambda_,)
 
 
@@ -5775,15 +6006,15 @@ def _steps_complete_acceleration(m, X, V, A, wrench):
 def _steps_leg_reactions(m, X, V, A, wrench):
     required, H, Hk = m.run(_run_required, ("required", "H", "Hk"), X, V, A)
     extend_1 = wrench
-    subtract_2 = required - extend_1
-    beside_3 = np.concatenate((H, Hk), axis=1)
-    solve_4 = _solve(beside_3, subtract_2)
-    split_5, split_6 = solve_4[:3], solve_4[3:]
+    subtract_1 = required - extend_1
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    solve_1 = _solve(beside_1, subtract_1)
+    split_1, split_2 = solve_1[:3], solve_1[3:]
     (
-    leg_force, drive, constraint_direction,
-    ) = m.run(_run_legs, ("leg_force", "drive", "constraint_direction"), X, V, A)
-    add_forces_7 = _with_forces(leg_force, split_5, drive, [0, 1, 2])
-    forces = _with_forces(add_forces_7, split_6, constraint_direction, [0, 1, 2])
+    leg_force, actuator, constraint_direction,
+    ) = m.run(_run_legs, ("leg_force", "actuator", "constraint_direction"), X, V, A)
+    add_forces_1 = _with_forces(leg_force, split_1, actuator, [0, 1, 2])
+    forces = _with_forces(add_forces_1, split_2, constraint_direction, [0, 1, 2])
     return (forces,)
 
 
@@ -5806,8 +6037,8 @@ def _steps_condition(m, X, length):
     H, Hk, lengths, legs, reach,
     ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     choose_length_1 = _chosen_length(lengths, length)
-    divide_rows_2 = _rows_divided(H, choose_length_1, [3, 4, 5])
-    sigma = _singular_values(divide_rows_2)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
@@ -5816,19 +6047,19 @@ def _steps_condition_constrained(m, X, length):
     H, Hk, lengths, legs, reach,
     ) = m.run(_run_condition, ("H", "Hk", "lengths", "pivots", "reach"), X)
     beside_1 = np.concatenate((H, Hk), axis=1)
-    choose_length_2 = _chosen_length(lengths, length)
-    divide_rows_3 = _rows_divided(beside_1, choose_length_2, [3, 4, 5])
-    sigma = _singular_values(divide_rows_3)
+    choose_length_1 = _chosen_length(lengths, length)
+    divide_rows_1 = _rows_divided(beside_1, choose_length_1, [3, 4, 5])
+    sigma = _singular_values(divide_rows_1)
     return (sigma, legs,)
 
 
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
     take_1 = q[[2, 5, 8]]
-    subtract_2 = q_actuated - take_1
+    subtract_1 = q_actuated - take_1
     constraints, = m.run(_run_constraints, ("constraints",), X)
-    negative_3 = -constraints
-    gap = np.concatenate((subtract_2, negative_3))
+    negative_1 = -constraints
+    gap = np.concatenate((subtract_1, negative_1))
     return (gap,)
 
 
@@ -5918,24 +6149,24 @@ def _steps_rotation(m, X):
 
 def _steps_pose(m, t, R):
     quaternion_of_rotation_1 = _quaternion_of_rotation(R)
-    join_2 = np.concatenate((t, quaternion_of_rotation_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rotation_1))
+    X = join_1
     return (X,)
 
 
 def _steps_X_dot(m, X, V):
     take_1 = V[3:6]
     take_2 = X[3:7]
-    quaternion_rate_3 = _quaternion_rate(take_2, take_1)
-    take_4 = V[0:3]
-    X_dot = np.concatenate((take_4, quaternion_rate_3))
+    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
+    take_3 = V[0:3]
+    X_dot = np.concatenate((take_3, quaternion_rate_1))
     return (X_dot,)
 
 
 def _steps_pose_from_rpy(m, t, rpy):
     quaternion_of_rpy_1 = _quaternion_of_rpy(rpy)
-    join_2 = np.concatenate((t, quaternion_of_rpy_1))
-    X = join_2
+    join_1 = np.concatenate((t, quaternion_of_rpy_1))
+    X = join_1
     return (X,)
 
 
@@ -5944,9 +6175,9 @@ def _steps_retract(m, X, step):
     take_2 = X[3:7]
     take_3 = step[0:3]
     take_4 = step[3:6]
-    turn_quaternion_5 = _turned(take_2, take_4)
-    add_6 = take_1 + take_3
-    X_moved = np.concatenate((add_6, turn_quaternion_5))
+    turn_quaternion_1 = _turned(take_2, take_4)
+    add_1 = take_1 + take_3
+    X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
@@ -5955,9 +6186,9 @@ def _steps_difference(m, X0, X1):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    step = np.concatenate((subtract_6, turn_between_5))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
@@ -5966,17 +6197,17 @@ def _steps_interpolate(m, X0, X1, s):
     take_2 = X0[3:7]
     take_3 = X1[0:3]
     take_4 = X1[3:7]
-    turn_between_5 = _turn_between(take_2, take_4)
-    subtract_6 = take_3 - take_1
-    join_7 = np.concatenate((subtract_6, turn_between_5))
-    scale_8 = join_7 * s
-    take_9 = X0[0:3]
-    take_10 = X0[3:7]
-    take_11 = scale_8[0:3]
-    take_12 = scale_8[3:6]
-    turn_quaternion_13 = _turned(take_10, take_12)
-    add_14 = take_9 + take_11
-    X = np.concatenate((add_14, turn_quaternion_13))
+    turn_between_1 = _turn_between(take_2, take_4)
+    subtract_1 = take_3 - take_1
+    join_1 = np.concatenate((subtract_1, turn_between_1))
+    scale_1 = join_1 * s
+    take_5 = X0[0:3]
+    take_6 = X0[3:7]
+    take_7 = scale_1[0:3]
+    take_8 = scale_1[3:6]
+    turn_quaternion_1 = _turned(take_6, take_8)
+    add_1 = take_5 + take_7
+    X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
 
