@@ -13,15 +13,17 @@ from pne_sym.backends.c_model import (
     parameter_fields,
     prepare_body,
 )
-from pne_sym.backends.c_parts import least_values
+from pne_sym.backends.c_parts import least_values, stage_texts
 from pne_sym.backends.c_public import Caller, c_functions
 from pne_sym.backends.c_sizes import count_of, sizes_of
+from pne_sym.backends.c_stages import Stages
 from pne_sym.backends.c_steps import OPERATIONS, Steps, biggest, results_of, runs_in_lanes
+from pne_sym.backends.c_sums import with_common_sums
 from pne_sym.backends.c_support import needed
 from pne_sym.backends.c_text import Routine, wrapped
 from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.templating import render
-from pne_sym.program.ir import Closure
+from pne_sym.program.ir import Closure, Function
 
 _SUPPORT = ("linear", "operations", "rotations", "iteration")
 """Templates of plain C, of which a module gets what it needs."""
@@ -94,7 +96,9 @@ class CBackend:
 
 def _view(bundle: Bundle) -> CView:
     """What the templates print."""
-    functions = _functions(bundle)
+    run = _run(bundle)
+    stages = Stages(run.values())
+    functions = _texts(bundle, run, stages)
     closures = tuple(
         CClosure(
             closure,
@@ -109,6 +113,8 @@ def _view(bundle: Bundle) -> CView:
     users = [Caller(bundle.name, f, *routines[f.of.name]) for f in c_functions(bundle)]
     closing = {closure.function for closure in bundle.program.closures}
     texts = [
+        "/* ---- what functions of the state share; v: values for others ---- */",
+        *stage_texts(bundle, stages),
         *(f.text for n, f in functions.items() if n in closing),
         *([_closing(bundle, closures)] if closures else []),
         "/* ---- functions of the state: M, Z, H and the like ---- */",
@@ -183,17 +189,24 @@ def _closing(bundle: Bundle, closures: tuple[CClosure, ...]) -> str:
     )
 
 
-def _functions(bundle: Bundle) -> dict[str, FunctionText]:
-    """The program's functions that are run; for states side by side where a public one wants it."""
+def _run(bundle: Bundle) -> dict[str, Function]:
+    """The program's functions that are run."""
     program = bundle.program
     run = {name for f in program.public for name in f.functions}
     run |= {closure.function for closure in program.closures}
+    return {n: with_common_sums(f) for n, f in program.functions.items() if n in run}
+
+
+def _texts(
+    bundle: Bundle, functions: dict[str, Function], stages: Stages
+) -> dict[str, FunctionText]:
+    """Functions of the program; for states side by side where a public one wants it."""
+    program = bundle.program
     lanes = {name for f in program.public if runs_in_lanes(f) for name in f.functions}
     summed = {name for f in program.public for name in results_of(f).values()}
     return {
-        name: function_text(bundle, function, lanes=name in lanes, summed=name in summed)
-        for name, function in program.functions.items()
-        if name in run
+        name: function_text(bundle, function, stages, lanes=name in lanes, summed=name in summed)
+        for name, function in functions.items()
     }
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_parts import Parts, vector_name
 from pne_sym.backends.c_sizes import array_names, count_of, times
-from pne_sym.backends.c_sums import with_common_sums
-from pne_sym.backends.c_text import Routine, comment
+from pne_sym.backends.c_stages import Stages
+from pne_sym.backends.c_text import Routine, comment, listing
 from pne_sym.program.ir import Block, Function
 
 LANES = 8
@@ -35,26 +35,28 @@ class FunctionText:
         return routine
 
 
-def function_text(bundle: Bundle, function: Function, *, lanes: bool, summed: bool) -> FunctionText:
+def function_text(
+    bundle: Bundle, function: Function, stages: Stages, *, lanes: bool, summed: bool
+) -> FunctionText:
     """A function of the program.
 
     Args:
         bundle: of the model.
-        function: the function.
+        function: the function, with common sums.
+        stages: what it shares with others.
         lanes: for states side by side too.
         summed: with the sum of all that it gives, to tell whether that is finite.
     """
-    return _FunctionWriter(bundle, function, summed=summed).text(lanes=lanes)
+    return _FunctionWriter(bundle, Parts(bundle, function, stages, summed=summed)).text(lanes=lanes)
 
 
 class _FunctionWriter:
-    def __init__(self, bundle: Bundle, function: Function, *, summed: bool) -> None:
-        self.bundle = bundle
-        self.f = function = with_common_sums(function)
-        self.name = function.name
-        self.parts = Parts(bundle, function, summed=summed)
+    def __init__(self, bundle: Bundle, parts: Parts) -> None:
+        self.bundle, self.parts, self.f = bundle, parts, parts.f
+        self.name = self.f.name
         self.before = self.parts.before()
         self.legs = [(b, self.parts.over(b), self.parts.place(b)) for b in self.parts.legs]
+        self.adding = [b for b in self.parts.legs if b.sums]
         self.after = self.parts.after() if self.parts.last else None
 
     def text(self, *, lanes: bool) -> FunctionText:
@@ -81,8 +83,7 @@ class _FunctionWriter:
             if not self.parts.is_full(a)
         ]
         body.append(self.before.call_with({"w": w}))
-        for block, over, place in self.legs:
-            body += (self._side_by_side if single else self._in_turn)(block, over, place)
+        body += self._side_by_side() if single else self._in_turn()
         if self.after:
             body.append(self.after.call_with({"w": w}))
         words = "\n".join(body)
@@ -90,13 +91,15 @@ class _FunctionWriter:
         names = [n for n, k in sizes.items() if k and f" {n}" in words]
         # gcc's analyzer does not see that the legs set all of it
         zero = " = {0}" * single
-        head = [f"real {n}[{times(sizes[n], w)}]{zero};" for n in names]
+        buffers = [f"{n}[{times(sizes[n], w)}]{zero}" for n in names]
+        head = listing("real ", buffers, ";") if buffers else []
         for block in self.parts.legs:
             width = f"LEGS({count_of(block.leg_type)})" if single else w
             rows = len(block.stores) + len(self.parts.flag_rows(block))
             terms = len(self.parts.sums) if single and block.sums else 0
             sizes = {f"terms_{block.leg_type}": terms, f"o_{block.leg_type}": rows}
-            head += [f"real {n}[{times(k, width)}]{zero};" for n, k in sizes.items() if k]
+            buffers = [f"{n}[{times(k, width)}]{zero}" for n, k in sizes.items() if k]
+            head += listing("real ", buffers, ";") if buffers else []
         parameters = [
             "const prepared *m",
             *(f"const real *{vector_name(v)}" for v in self.f.inputs),
@@ -107,42 +110,39 @@ class _FunctionWriter:
             f"{self.name}_run{'' if single else '_lanes'}", parameters, [*head, *body]
         )
 
-    def _side_by_side(self, block: Block, over: Routine, place: Routine) -> list[str]:
-        """The legs of one state, side by side."""
-        legs = count_of(block.leg_type)
-        given = {"w": "1", "count": f"LEGS({legs})", **self._arrays(block, single=True)}
-        at = {"leg": "0", "legs": "1", "states": "0", "add": "0"}
-        lines = [over.call_with(given | at)]
-        if place.body:
+    def _side_by_side(self) -> list[str]:
+        """The legs of one state, side by side; results may stand where inputs stood."""
+        lines, ends = [], []
+        for block, over, place in self.legs:
+            legs = count_of(block.leg_type)
+            given = {"w": "1", "count": f"LEGS({legs})", **self._arrays(block, single=True)}
+            at = {"leg": "0", "legs": "1", "states": "0", "add": "0"}
+            lines.append(over.call_with(given | at))
+            if place.body:
+                call = place.call_with({**given, "first": "leg"})
+                ends += [f"for (size_t leg = 0; leg < {legs}; ++leg) {{", f"    {call}", "}"]
+            if block.sums:
+                terms, more = f"terms_{block.leg_type}", "" if block is self.adding[0] else "+"
+                ends += [
+                    f"for (size_t n = 0; n < {len(self.parts.sums)}; ++n) {{",
+                    f"    sums[n] {more}= total({terms} + n*LEGS({legs}), {legs});",
+                    "}",
+                ]
+        return lines + ends
+
+    def _in_turn(self) -> list[str]:
+        """One leg after another, the states side by side."""
+        lines = [f"clear(sums, {times(len(self.parts.sums), 'LANES')});"] if self.adding else []
+        for block, over, place in self.legs:
+            given = {"w": "LANES", "count": "LANES", **self._arrays(block, single=False)}
+            at = {"legs": "0", "states": "1", "add": "1"}
             lines += [
-                f"for (size_t leg = 0; leg < {legs}; ++leg) {{",
-                f"    {place.call_with({**given, 'first': 'leg'})}",
+                f"for (size_t leg = 0; leg < {count_of(block.leg_type)}; ++leg) {{",
+                f"    {over.call_with(given | at)}",
+                *([f"    {place.call_with({**given, 'first': '0'})}"] if place.body else []),
                 "}",
             ]
-        if not block.sums:
-            return lines
-        terms = f"terms_{block.leg_type}"
-        more = "" if block is next(b for b in self.parts.legs if b.sums) else "+"
-        return [
-            *lines,
-            f"for (size_t n = 0; n < {len(self.parts.sums)}; ++n) {{",
-            f"    sums[n] {more}= total({terms} + n*LEGS({legs}), {legs});",
-            "}",
-        ]
-
-    def _in_turn(self, block: Block, over: Routine, place: Routine) -> list[str]:
-        """One leg after another, the states side by side."""
-        legs = count_of(block.leg_type)
-        given = {"w": "LANES", "count": "LANES", **self._arrays(block, single=False)}
-        at = {"legs": "0", "states": "1", "add": "1"}
-        first = block is next((b for b in self.parts.legs if b.sums), None)
-        return [
-            *([f"clear(sums, {times(len(self.parts.sums), 'LANES')});"] if first else []),
-            f"for (size_t leg = 0; leg < {legs}; ++leg) {{",
-            f"    {over.call_with(given | at)}",
-            *([f"    {place.call_with({**given, 'first': '0'})}"] if place.body else []),
-            "}",
-        ]
+        return lines
 
     def _arrays(self, block: Block, *, single: bool) -> dict[str, str]:
         """Arrays of what the legs give; states side by side are added up in place."""

@@ -7,9 +7,9 @@ import math
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_parts import capacity, statements
 from pne_sym.backends.c_sizes import count_of, times
+from pne_sym.backends.c_stages import Shared
 from pne_sym.backends.c_sums import common_sums
 from pne_sym.backends.c_text import (
-    PRINTER,
     c_name,
     comment,
     indented,
@@ -78,7 +78,7 @@ def model_fields(bundle: Bundle) -> list[str]:
 class _Preparation:
     def __init__(self, bundle: Bundle) -> None:
         self.bundle = bundle
-        self.printer = PRINTER
+        self.printer = Shared()
         self.titles = equation_titles(bundle.derivation)
 
     def body(self) -> list[str]:

@@ -157,7 +157,7 @@ class Caller:
         shapes = (", ".join(i.text for i in f.inputs), ", ".join(o.text for o in f.outputs))
         lines = comment(f"{f.meaning}  In: {shapes[0]}.  Out: {shapes[1]}.")
         for batch in (False, True):
-            *head, last = self._head(batch=batch)
+            *head, last = self._head(f"{self.prefix}_", batch=batch)
             lines += [*head, f"{last};"]
         return lines
 
@@ -167,7 +167,7 @@ class Caller:
         unread = ["model"] * (self.f.has_model and "m" not in read)
         unread += [i.name for i in self.f.inputs if i.name not in read]
         return [
-            *self._head(batch=False),
+            *self._head("", batch=False),
             "{",
             "    int code;",
             *(f"    (void){name};" for name in unread),
@@ -175,24 +175,20 @@ class Caller:
             "    return code;",
             "}",
             "",
-            *self._head(batch=True),
+            *self._head("", batch=True),
             "{",
-            "    size_t failed = 0, i = 0;",
-            *(self._in_lanes(self.lanes) if self.lanes else []),
-            "    for (; i < n; ++i) {",
-            *indented(self._single("const int code", "i"), 2),
-            "        failed += record(&code, 1, status ? status + i : NULL);",
-            "    }",
+            *indented(self._in_lanes(self.lanes) if self.lanes else self._in_turn()),
             "    return failed;",
             "}",
         ]
 
-    def _head(self, *, batch: bool) -> list[str]:
-        """Return type, name, parameters."""
+    def _head(self, types: str, *, batch: bool) -> list[str]:
+        """Return type, name, parameters; `types` is put before the names of types."""
         f, p = self.f, self.prefix
-        parameters = [f"const {p}_model *model"] * f.has_model + ["size_t n"] * batch
-        parameters += [f"const {p}_real *{i.name}" for i in f.inputs]
-        parameters += [f"{p}_real *{o.name}" for o in f.outputs]
+        model = f"{types}model" if types else "prepared"
+        parameters = [f"const {model} *model"] * f.has_model + ["size_t n"] * batch
+        parameters += [f"const {types}real *{i.name}" for i in f.inputs]
+        parameters += [f"{types}real *{o.name}" for o in f.outputs]
         parameters += ["int *status"] * batch
         kind = "size_t" if batch else "int"
         return listing(f"{kind} {p}_{f.name}{'_batch' if batch else ''}(", parameters, ")")
@@ -220,17 +216,31 @@ class Caller:
         head = f"{target} = {self.prefix}_{self.f.name}("
         return listing(head, ["model"] * self.f.has_model + arrays, ");")
 
-    def _in_lanes(self, steps: Routine) -> list[str]:
-        """As many states as there are lanes at a time; what fails is settled one by one."""
+    def _in_turn(self) -> list[str]:
+        """One state after another."""
         return [
-            "    for (; LANES > 1 && i + LANES <= n; i += LANES) {",
-            "        int codes[LANES];",
+            "size_t failed = 0;",
+            "for (size_t i = 0; i < n; ++i) {",
+            *indented(self._single("const int code", "i")),
+            "    failed += record(&code, 1, status ? status + i : NULL);",
+            "}",
+        ]
+
+    def _in_lanes(self, steps: Routine) -> list[str]:
+        """As many states as there are lanes at a time; what fails, and what is left, one by one."""
+        return [
+            "size_t failed = 0, w;",
+            "for (size_t i = 0; i < n; i += w) {",
+            "    int codes[LANES] = {INVALID};",
+            "    w = LANES > 1 && i + LANES <= n ? LANES : 1;",
+            "    if (w > 1) {",
             *indented(self._call(steps, "i", "codes"), 2),
-            "        for (size_t k = 0; k < LANES; ++k) {",
-            "            if (codes[k] != OK) {",
-            *indented(self._single("codes[k]", "i + k"), 4),
-            "            }",
-            "        }",
-            "        failed += record(codes, LANES, status ? status + i : NULL);",
             "    }",
+            "    for (size_t k = 0; k < w; ++k) {",
+            "        if (codes[k] != OK) {",
+            *indented(self._single("codes[k]", "i + k"), 3),
+            "        }",
+            "    }",
+            "    failed += record(codes, w, status ? status + i : NULL);",
+            "}",
         ]

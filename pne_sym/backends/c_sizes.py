@@ -43,8 +43,8 @@ def count_of(leg_type: str) -> str:
 def times(*factors: str | int) -> str:
     """A product.
 
-    >>> times("NV + NC", 1, "LANES"), times(1), times(2, 3)
-    ('(NV + NC)*LANES', '1', '6')
+    >>> times("NV + NC", 1, "LANES"), times(1), times(2, 3), times(0, "NV")
+    ('(NV + NC)*LANES', '1', '6', '0')
     """
     number, names = 1, []
     for factor in map(str, factors):
@@ -52,6 +52,8 @@ def times(*factors: str | int) -> str:
             number *= int(factor)
         else:
             names.append(f"({factor})" if " " in factor else factor)
+    if not number:
+        return "0"
     return "*".join([*([str(number)] if number != 1 or not names else []), *names])
 
 

@@ -71,7 +71,13 @@ class Algorithm:
         fixed = tuple(numbers)
         targets = []
         for shape in OPERATIONS[operation].shapes(tuple(o.shape for o in operands), fixed):
-            self._made[operation] += 1
-            targets.append(Value(f"{operation}_{self._made[operation]}", shape))
+            targets.append(Value(self._name(operation, operands, fixed), shape))
         self.steps.append(Apply(operation, operands, tuple(targets), fixed))
         return tuple(targets)
+
+    def _name(self, operation: str, operands: tuple[Value, ...], numbers: tuple[int, ...]) -> str:
+        """A name that other steps do not change: a part by its place, others counted."""
+        part = operation == "take" and numbers and len(operands[0].shape) == 1
+        name = f"{operands[0].name}_from_{numbers[0]}" if part else operation
+        self._made[name] += 1
+        return name if part and self._made[name] == 1 else f"{name}_{self._made[name]}"

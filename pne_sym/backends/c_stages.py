@@ -1,0 +1,296 @@
+"""What functions of the program share in C: stages that compute once written values.
+
+Statements that several functions make alike stand in one inline routine, which leaves in a
+structure what others need of them.  Where a function needs less, the compiler drops the rest.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.backends.c_text import PRINTER, c_name
+from pne_sym.program.ir import Assignment, Function
+from pne_sym.program.slices import Slices, slices, symbols
+
+_MANY = 3  # functions that need not want all of a stage
+_FEW = 4  # statements of two functions that are not worth a stage
+
+
+@dataclass(frozen=True)
+class Statement:
+    """An assignment with what it is made of: equal ones compute the same in all functions.
+
+    Attributes:
+        part: leg type, or "" before the legs.
+        assignment: the assignment.
+        of: number of the statement that makes each name it reads, of those that are made before.
+    """
+
+    part: str
+    assignment: Assignment
+    of: tuple[tuple[str, int], ...]
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """The same for what computes the same under the same name, whatever equation it is for."""
+        return self.part, self.assignment.target, self.assignment.expr, self.of
+
+
+@dataclass
+class Stage:
+    """Statements of one part that functions share.
+
+    Attributes:
+        name: in C.
+        part: leg type, or "".
+        rank: stages run in this order.
+        numbers: of its statements, in order.
+        exported: names that others read.
+    """
+
+    name: str
+    part: str
+    rank: tuple[int, str]
+    numbers: list[int] = field(default_factory=list)
+    exported: list[str] = field(default_factory=list)
+
+
+class Shared:
+    """Prints expressions in which some names are members of a structure."""
+
+    def __init__(self, names: Collection[str] = (), prefix: str = "") -> None:
+        self.names, self.prefix = {c_name(n) for n in names}, prefix
+
+    def text(self, expr: Any) -> str:
+        """An expression as text."""
+        return re.sub(r"[A-Za-z_]\w*", self._member, PRINTER.text(expr))
+
+    def _member(self, found: re.Match[str]) -> str:
+        return f"{self.prefix}{found[0]}" if found[0] in self.names else found[0]
+
+
+class Stages:
+    """The stages of a model.
+
+    Args:
+        functions: that are printed, with common sums.
+    """
+
+    def __init__(self, functions: Iterable[Function]) -> None:
+        self.statements: list[Statement] = []
+        self.numbers: dict[tuple[object, ...], int] = {}
+        self.made: dict[str, dict[str, int]] = {}
+        self.users: dict[int, set[str]] = {}
+        self.kinds: list[frozenset[str]] = []
+        self.parts = {f.name: slices(f) for f in functions}
+        self.vectors = _vectors(p.function for p in self.parts.values())
+        self.aliases = {n: e for p in self.parts.values() for n, e in aliases(p.function).items()}
+        for name, own in self.parts.items():
+            self._number(name, own)
+        self.stage_of = self._stages()
+        unique = {id(s): s for s in self.stage_of.values()}
+        self.stages = sorted(unique.values(), key=lambda s: s.rank)
+        self._export()
+        reads = [n for s in self.stages if s.part for n in self.read_before(s)]
+        self.layout = tuple(dict.fromkeys(reads))
+
+    # ---- statements ------------------------------------------------------------------------
+
+    def _number(self, function: str, own: Slices) -> None:
+        """Give numbers to a function's statements, equal ones the same."""
+        made: dict[str, int] = {}
+        for part, assignments in _parts(own):
+            for a in assignments:
+                names = sorted(s.name for s in a.expr.free_symbols)
+                of = tuple((n, made[n]) for n in names if n in made)
+                statement = Statement(part, a, of)
+                number = self.numbers.setdefault(statement.key, len(self.statements))
+                if number == len(self.statements):
+                    self.statements.append(statement)
+                    self.kinds.append(self._kind(statement, names))
+                made[a.target.name] = number
+                self.users.setdefault(number, set()).add(function)
+        self.made[function] = made
+
+    def _kind(self, statement: Statement, names: Iterable[str]) -> frozenset[str]:
+        """What it depends on: vectors, and values of legs' own inputs."""
+        kind = set[str]().union(*(self.kinds[k] for _, k in statement.of))
+        known = {n for n, _ in statement.of}
+        for n in names:
+            if n not in known and n in self.vectors:
+                kind.add(self.vectors[n])
+        return frozenset(kind)
+
+    def _stages(self) -> dict[int, Stage]:
+        """Stage of every statement that is in one."""
+        found: dict[int, Stage] = {}
+        stages: dict[tuple[str, frozenset[str], frozenset[str]], Stage] = {}
+        count = Counter((s.part, frozenset(self.users[k])) for k, s in enumerate(self.statements))
+        by_users = sorted(range(len(self.statements)), key=lambda k: -len(self.users[k]))
+        taken = dict[tuple[Any, str], int]()
+        for k in by_users:
+            statement, users = self.statements[k], frozenset(self.users[k])
+            # what it is made of has at least as many users, and has been placed
+            whole = all(n in found and self._is_common(found[n]) for _, n in statement.of)
+            common = len(users) >= _MANY and whole
+            if not common and (len(users) < 2 or count[statement.part, users] < _FEW):
+                continue
+            key = (statement.part, self.kinds[k] if common else frozenset(),
+                   frozenset() if common else users)  # fmt: skip
+            place = (statement.part if common else key, statement.assignment.target.name)
+            if taken.setdefault(place, k) != k:
+                continue
+            if not common and any(
+                n not in found for _, n in statement.of if self.statements[n].part == statement.part
+            ):
+                continue
+            stage = stages.setdefault(key, _stage(*key))
+            found[k] = stage
+        for k in sorted(found):
+            found[k].numbers.append(k)
+        return found
+
+    def _is_common(self, stage: Stage) -> bool:
+        return stage.rank[0] < _PAIR // 2
+
+    def _export(self) -> None:
+        """Find what is read outside of a stage."""
+        outside: set[int] = set()
+        for k, statement in enumerate(self.statements):
+            stage = self.stage_of.get(k)
+            outside |= {
+                n for _, n in statement.of if self.stage_of.get(n) is not stage or not stage
+            }
+        for name, own in self.parts.items():
+            made = self.made[name]
+            outside |= {made[n] for n in _ends(own) if n in made}
+        for stage in self.stages:
+            names = [
+                self.statements[k].assignment.target.name for k in stage.numbers if k in outside
+            ]
+            stage.exported = names
+
+    # ---- what is asked ---------------------------------------------------------------------
+
+    def read_before(self, stage: Stage) -> list[str]:
+        """Names made before the legs that a stage over the legs reads, but for those of inputs."""
+        of = [pair for k in stage.numbers for pair in self.statements[k].of]
+        return list(dict.fromkeys(n for n, k in of if not self.statements[k].part))
+
+    def assignments(self, stage: Stage) -> list[Assignment]:
+        """Statements of a stage."""
+        return [self.statements[k].assignment for k in stage.numbers]
+
+    def used(self, function: str, part: str) -> list[Stage]:
+        """Stages that a part of a function runs, in order."""
+        made = self.made[function]
+        wanted = [self.stage_of[k] for k in made.values() if k in self.stage_of]
+        if not part:
+            later = (s for s in [*wanted] if s.part)
+            wanted += [self.stage_of[k] for s in self._closed(later) for k in self._before(s)]
+        return self._closed(s for s in wanted if s.part == part)
+
+    def _before(self, stage: Stage) -> list[int]:
+        of = [n for k in stage.numbers for _, n in self.statements[k].of]
+        return [n for n in of if not self.statements[n].part and n in self.stage_of]
+
+    def _closed(self, stages: Iterable[Stage]) -> list[Stage]:
+        """Stages with those that they need, of the same part."""
+        found: list[Stage] = []
+        waiting = list(stages)
+        while waiting:
+            stage = waiting.pop()
+            if stage in found:
+                continue
+            found.append(stage)
+            of = (n for k in stage.numbers for _, n in self.statements[k].of)
+            needed = (self.stage_of[n] for n in of if n in self.stage_of)
+            waiting += [s for s in needed if s.part == stage.part]
+        return sorted(found, key=lambda s: s.rank)
+
+    def own(self, function: str, assignments: Sequence[Assignment]) -> list[Assignment]:
+        """Statements that a function makes itself; names of inputs are none."""
+        made = self.made[function]
+        rest = (a for a in assignments if made.get(a.target.name, -1) not in self.stage_of)
+        return [a for a in rest if a.target.name not in self.aliases]
+
+    def members(self, function: str, part: str) -> set[str]:
+        """Names whose values a function has from stages of a part."""
+        numbers = {k for k, s in self.stage_of.items() if s.part == part}
+        own = {n for n, k in self.made[function].items() if k in numbers}
+        others = {n for s in self.used(function, part) for n in s.exported}
+        return own | (others - set(self.made[function]))
+
+    def passed(self, function: str) -> list[str]:
+        """Names made before the legs that later parts read; what stages read has a fixed place."""
+        own = self.parts[function]
+        used = [s for leg in own.legs for s in self.used(function, leg.leg_type)]
+        read = {n for s in used for n in self.read_before(s)}
+        after = symbols(own.after)
+        kept = [n for n in own.passed if n not in self.aliases or n in after]
+        return [*self.layout, *(n for n in kept if n not in self.layout)] if read else kept
+
+    def stored(self, function: str) -> set[str]:
+        """Those of them that the function has."""
+        own = self.parts[function]
+        used = [s for leg in own.legs for s in self.used(function, leg.leg_type)]
+        return {n for s in used for n in self.read_before(s)} | set(own.passed)
+
+
+_PAIR = 100
+
+
+def _stage(part: str, kind: frozenset[str], users: frozenset[str]) -> Stage:
+    words = sorted(users or kind or {"model"})
+    rank = _PAIR - len(users) if users else len(kind)
+    name = "_".join(["stage", *([part] if part else []), *words])
+    return Stage(name, part, (rank, name))
+
+
+def aliases(function: Function) -> dict[str, str]:
+    """Names of entries of inputs -> the entry, such as V_0."""
+    return {
+        a.target.name: a.expr.name
+        for a in function.unpack
+        if a.expr.is_Symbol and a.expr.name.rpartition("_")[0] in function.inputs
+    }
+
+
+def _vectors(functions: Iterable[Function]) -> dict[str, str]:
+    """Names of entries of input vectors, and of inputs of legs -> the vector."""
+    found: dict[str, str] = {}
+    for f in functions:
+        for a in f.unpack:
+            for n in [s.name for s in a.expr.free_symbols]:
+                if n.rpartition("_")[0] in f.inputs:
+                    found[n] = n.rpartition("_")[0]
+        found |= {n: found[e] for n, e in aliases(f).items()}
+        found |= {i.symbol.name: i.vector for own in f.leg_inputs.values() for i in own}
+    return found
+
+
+def _parts(own: Slices) -> list[tuple[str, tuple[Assignment, ...]]]:
+    """Assignments before the legs, and over the legs of each type, without names of inputs."""
+    named = aliases(own.function)
+    first = own.before.assignments if own.before else ()
+    unpack = tuple(a for a in own.function.unpack if a.target.name not in named)
+    return [("", unpack + first), *((b.leg_type, b.assignments) for b in own.legs)]
+
+
+def _ends(own: Slices) -> set[str]:
+    """Names that are read by others than assignments, or behind the legs."""
+    checks = [e for c in own.function.unpack_checks for e in (c.value, c.scale)]
+    found = {s.name for e in checks for s in sp.sympify(e).free_symbols}
+    for block in (own.before, *own.legs):
+        if block:
+            read = [sp.sympify(e) for c in block.checks for e in (c.value, c.scale)]
+            read += [sp.sympify(s.value) for s in block.stores]
+            read += [sp.sympify(v) for _, v in block.sums]
+            found |= {s.name for e in read for s in e.free_symbols}
+    return found | symbols(own.after)
