@@ -31,14 +31,16 @@ from pne_sym.mechanics.leg_chain import LegChain
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter
 from pne_sym.mechanics.leg_geometry import LegGeometry, build_geometry
 from pne_sym.mechanics.leg_motion import write_motion
+from pne_sym.mechanics.legs import Leg
 from pne_sym.mechanics.link_forces import LinkWriter
 from pne_sym.mechanics.links import introduce_bodies
+from pne_sym.mechanics.lumping import PlatformInertia, write_inertia
 from pne_sym.mechanics.mobility import check_solvable, mobility
 from pne_sym.mechanics.motors import write_motors
 from pne_sym.mechanics.moving_base import introduce_base
 from pne_sym.mechanics.notation import with_symbols
 from pne_sym.mechanics.orientation import orientation_rows, orientation_signs
-from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
+from pne_sym.mechanics.platform_dynamics import PlatformWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
 from pne_sym.mechanics.scales import home_lengths, with_size
 from pne_sym.mechanics.scope import check_scope
@@ -80,11 +82,11 @@ def _derive(book: Book, manipulator: Manipulator) -> Derivation:
     check_dependence(manipulator)
     for leg_type in types:
         legs.append(_derive_leg(book, manipulator, space, platform, leg_type))
-    writer = PlatformWriter(book, space, platform, legs)
-    writer.lump()
+    inertia = write_inertia(book, platform, legs)
+    writer = PlatformWriter(book, space, platform, inertia, legs)
     writer.equilibrium()
     writer.blocks()
-    _potential(book, platform, writer, legs)
+    _potential(book, platform, inertia, legs)
     _dissipation(book, legs)
     write_motors(book, manipulator, legs)
     for leg in legs:
@@ -371,14 +373,14 @@ def _dissipation(book: Book, legs: list[Leg]) -> None:
 def _potential(
     book: Book,
     platform: PlatformMotion,
-    writer: PlatformWriter,
+    inertia: PlatformInertia,
     legs: list[Leg],
 ) -> None:
     """Potential energy, zero at the base origin."""
     sprung = any(leg.dynamics.forces.potential != 0 for leg in legs)
     text = "Weight times height, zero at the base origin" + ", and the energy of springs" * sprung
     book.chapter("V", "Potential energy", f"{text}.")
-    total: Any = -Dot(platform.weight, writer.mass * platform.t + writer.moment)
+    total: Any = -Dot(platform.weight, inertia.mass * platform.t + inertia.moment)
     for leg in legs:
         g = leg.g
         terms: list[Any] = []

@@ -14,7 +14,7 @@ import sympy as sp
 
 from pne_sym.derivation import Book, Output, ParameterField, Quantity, Rule
 from pne_sym.mechanics.joint_forces import Motor
-from pne_sym.mechanics.platform_dynamics import Leg
+from pne_sym.mechanics.legs import Leg
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import linear_form
 

@@ -11,11 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 from pne_sym.derivation import Book, Equation, Law, names_in
-from pne_sym.mechanics.leg_dynamics import LegDynamics
-from pne_sym.mechanics.leg_motion import LegMotion
+from pne_sym.mechanics.legs import Leg
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.vector import (
     LinearForm,
@@ -28,22 +27,6 @@ from pne_sym.vector import (
     sum_over_legs,
     vector_sum,
 )
-
-
-class Leg(Protocol):
-    """A leg type: see `platform_dynamics.Leg`."""
-
-    @property
-    def name(self) -> str:
-        """Name of the leg type."""
-
-    @property
-    def motion(self) -> LegMotion:
-        """Its kinematics."""
-
-    @property
-    def dynamics(self) -> LegDynamics:
-        """Its dynamics."""
 
 
 @dataclass(frozen=True)

@@ -105,10 +105,10 @@ class Named(Protocol):
 
 
 class Writer:
-    """Writes equations of a leg: names, symbols and meanings stand in a table."""
+    """Writes equations of a leg, or of the platform: names, symbols, meanings stand in a table."""
 
     def __init__(
-        self, book: Book, g: Named, table: Mapping[str, Term], collect: Collect | None = None
+        self, book: Book, g: Named | None, table: Mapping[str, Term], collect: Collect | None = None
     ) -> None:
         self.book, self.g, self.table, self.collect = book, g, table, collect
 
@@ -141,8 +141,9 @@ class Writer:
         return self.collect(filled(stem, numbers), rhs, latex, title, law, **told)
 
     def _name(self, stem: str, numbers: Sequence[Any]) -> str:
-        """The name in this leg type."""
-        return self.g.name(filled(stem, numbers).partition(":")[0])
+        """The name, in this leg type."""
+        name = filled(stem, numbers).partition(":")[0]
+        return self.g.name(name) if self.g else name
 
     def _told(
         self, stem: str, numbers: Sequence[Any], facts: dict[str, Any]
@@ -163,7 +164,8 @@ class Writer:
 
     def _unit(self, term: Term, numbers: Sequence[Any]) -> str:
         """Unit of what is given, where it has no components that tell."""
-        return term.unit.replace("U", self.g.kind(numbers[0]).unit) if term.unit else "-"
+        of_joint = self.g.kind(numbers[0]).unit if self.g and term.unit else ""
+        return term.unit.replace("U", of_joint) or "-"
 
     def give(self, stem: str, frame: str, components: Iterable[Any], *numbers: Any) -> VectorSymbol:
         """Introduce a vector with its components, fixed in a frame; returns its symbol."""
