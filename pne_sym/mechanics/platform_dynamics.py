@@ -25,12 +25,14 @@ from pne_sym.vector import (
     Cross,
     Dot,
     Identity,
+    LinearForm,
     Outer,
     TensorSymbol,
     Transpose,
     Vector,
     ZeroTensor,
     ZeroVector,
+    linear_form,
     sum_over_legs,
     tensor_sum,
     vector_sum,
@@ -250,21 +252,21 @@ class PlatformWriter:
         book = self.book
         for leg, j, rows in self._extras():
             form = leg.dynamics.extra_rows[j][1]
-            q, motion, g = leg.g.platform_point, leg.motion, leg.g
-            coefficient = form.coefficients.get(motion.a_p, ZeroVector)
-            turning = form.coefficients.get(self.p.alpha, ZeroVector)
+            motion, g = leg.motion, leg.g
             self._leg_scalar("Z", leg, form.remainder, rows)
-            if coefficient != ZeroVector or turning != ZeroVector:
+            own = self._by_platform(leg, form)
+            if own.coefficients:
                 if self.space.translates:
-                    self._leg_vector("M", leg, coefficient, 0, leg_rows=rows)
+                    self._leg_vector("M", leg, own.coefficients[self.p.t_ddot], 0, leg_rows=rows)
                 if self.space.rotates:
                     arm = book.define(
                         g.name(f"M_ya_{j}"),
-                        Cross(q, coefficient) + turning,
+                        own.coefficients[self.p.alpha],
                         rf"\mathbf M_{{y\alpha,{j}}}",
                         f"coupling of extra joint {j} with the rotation of the platform",
-                        Law.ASSEMBLY,
+                        Law.RULES,
                         body="base",
+                        linear=LinearForm({}, sp.S.Zero, own.steps),
                         reference="Eqs. 6, 7",
                     )
                     self._leg_vector("M", leg, arm, 3, leg_rows=rows)
@@ -283,6 +285,14 @@ class PlatformWriter:
                             mirrored=k != j,
                         )
                     )
+
+    def _by_platform(self, leg: Leg, form: LinearForm) -> LinearForm:
+        """A leg's form collected anew, its connection point moving with the platform."""
+        a_p, alpha = leg.motion.a_p, self.p.alpha
+        given = (e.rhs for e in self.book.all_equations() if e.lhs == a_p)
+        moved = {a_p: next(given, a_p), alpha: alpha}
+        parts = (Dot(form.coefficients.get(x, ZeroVector), to) for x, to in moved.items())
+        return linear_form(sp.Add(*parts), [x for x in (self.p.t_ddot, alpha) if x != ZeroVector])
 
     def _extra_rows_of(self, leg: Leg, j: int) -> tuple[int, ...]:
         return next(rows for other, k, rows in self._extras() if other is leg and k == j)
