@@ -102,7 +102,7 @@ class LatexPrinter:
             return self._scaled(*expr.args)
         if isinstance(expr, n.VectorLegSum | n.TensorLegSum | n.LegSum):
             return self._leg_sum(*expr.args)
-        if isinstance(expr, n.Vector | n.Tensor | n.Dot | n.DualScalar):
+        if isinstance(expr, n.Vector | n.Tensor | n.Dot | n.Trace | n.DualScalar):
             return self._node(expr)
         if isinstance(expr, sp.Symbol):
             return self._symbol(expr)
@@ -133,6 +133,7 @@ class LatexPrinter:
             n.DualVector: lambda k, *_: self._reciprocal(k, r"\mathrm F"),
             n.DualScalar: lambda k, i, *_: self._reciprocal(k, rf"\mathrm M_{int(i) + 1}"),
             n.Axial: lambda a: Term(rf"\mathrm{{ax}}{brackets(self.doprint(a))}"),
+            n.Trace: lambda a: Term(rf"\mathrm{{tr}}{brackets(self.doprint(a))}"),
         }
 
     def _reciprocal(self, k: Any, part: str) -> Term:

@@ -19,6 +19,7 @@ from pne_sym.derivation.equation import (
     Role,
     Trouble,
     full_name,
+    full_names,
     leg_sums,
     names_in,
 )
@@ -57,6 +58,7 @@ __all__ = [
     "Rule",
     "Trouble",
     "full_name",
+    "full_names",
     "leg_sums",
     "names_in",
     "rotations_by_place",

@@ -498,18 +498,22 @@ def names_in(expr: Any) -> set[str]:
     return found
 
 
-def full_name(derivation: Derivation, name: str) -> str:
-    """A quantity's name with its leg type, where the type is left out or stands behind it.
+def full_names(derivation: Derivation, name: str) -> list[str]:
+    """A quantity's names with their leg types: a name without type is of all types that have it.
 
-    q_2 and q_2_rpr are rpr_q_2; what is no such quantity, or one of several types, is returned
-    as it is.
+    q_2 is rpr_q_2 and prr_q_2, q_2_rpr is rpr_q_2; what is no such quantity is returned as it is.
     """
     if name in derivation.notation:
-        return name
+        return [name]
     types = [info.name for info in derivation.leg_types]
-    found = {f"{of}_{text}" for of in types for text in (name, name.removesuffix(f"_{of}"))}
-    found &= derivation.notation.keys()
-    return found.pop() if len(found) == 1 else name
+    found = (f"{of}_{text}" for of in types for text in (name, name.removesuffix(f"_{of}")))
+    return [n for n in dict.fromkeys(found) if n in derivation.notation] or [name]
+
+
+def full_name(derivation: Derivation, name: str) -> str:
+    """The same where one type has it; what several have is returned as it is."""
+    found = full_names(derivation, name)
+    return found[0] if len(found) == 1 else name
 
 
 def leg_sums(expr: Any) -> list[Any]:

@@ -46,8 +46,8 @@ EQUATIONS = _passages("""
 3  | 2.3 | REDUCTION NEWTON              | force of a leg: of its actuators, and the rest
 4  | 2.3 | RULES                         | force of a leg with the acceleration collected
 5  | 2.4 | ASSEMBLY                      | equations of motion
-6  | 3.5 | ASSEMBLY FREEDOM              | equations of motion with coordinates of extra joints
-7  | 3.6 | ASSEMBLY FREEDOM              | equations of motion with passive extra coordinates
+6  | 3.5 | ASSEMBLY FREEDOM RULES        | equations of motion with coordinates of extra joints
+7  | 3.6 | ASSEMBLY FREEDOM RULES        | equations of motion with passive extra coordinates
 8  | 4.1 | RECIPROCITY                   | five-bar, slides: acceleration of the slide
 9  | 4.1 | RECIPROCITY                   | five-bar, slides: angular acceleration of the leg
 10 | 4.1 | RATE                          | five-bar, slides: acceleration of the lower link

@@ -250,16 +250,14 @@ class Builder:
     def _product(self, a: Atom, b: Atom, hint: str, *, named: bool) -> Atom:
         if a.is_Number or b.is_Number:
             return self.let(algebra.product(a, b), hint, named=named)
-        if a == b:
-            square = self._square_of_root(a)
-            if square is not None:
-                return square
         sign = 1
         if a.is_Mul:
             a, sign = algebra.negative(a), -sign
         if b.is_Mul:
             b, sign = algebra.negative(b), -sign
-        cancelled = self._cancel(a, b)
+        cancelled = self._square_of_root(a) if a == b else None
+        if cancelled is None:
+            cancelled = self._cancel(a, b)
         if cancelled is None:
             cancelled = self._cancel(b, a)
         if cancelled is None:

@@ -478,6 +478,9 @@ class Lowering:
             return self._scalar_symbol(expr)
         if isinstance(expr, n.Dot):
             return self._dot(expr, hint)
+        if isinstance(expr, n.Trace):
+            T = self.tensor(expr.args[0], self._frames_of(expr)[0])
+            return self.b.add([T[i][i] for i in range(3)], hint)
         if isinstance(expr, n.DualScalar):
             return self._moment_part(expr)
         if isinstance(expr, n.LegSum):
@@ -574,8 +577,13 @@ class Lowering:
             if found is not None:
                 basis, k = found
                 return self.bases.resolve(basis, other)[k]
-        frames = self._frames_of(expr)
+        frames = sorted(self._frames_of(expr), key=lambda f: f not in self._coordinates(expr))
         return self.trials.cheapest([partial(self._dot_in, a, c, f, hint) for f in frames])
+
+    def _coordinates(self, expr: Any) -> set[str]:
+        """Frames along whose axes a factor of a scalar product lies: it is a component there."""
+        given = (self.given[factor] for factor in expr.args if factor in self.given)
+        return {g.frame for g in given if all(c.is_Integer for c in g.components)}
 
     def _dot_in(self, a: Any, c: Any, frame: str, hint: str) -> Atom:
         u, v = self.vector(a, frame), self.vector(c, frame)

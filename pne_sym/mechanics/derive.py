@@ -240,6 +240,8 @@ def _inverse_kinematics(
         book.reset(before)
         book.retext(_ITERATED)
         inverse = given_displacements(book, g, inverse.reasons)
+    elif inverse.swings:
+        book.retext(_SWINGING)
     inverse = replace(inverse, S=S)
     signs = branch_signs(manipulator, g, inverse, book)
     for branch, of_legs in zip(inverse.branches, signs, strict=True):
@@ -419,6 +421,13 @@ _INVERSE = (
     r"for cosine and sine of its angle from the reference direction $`\hat{\mathbf x}^0_j`$; "
     r"$`K_j`$ is its amplitude, and $`\sigma_j`$, the sign of the root, is that of the home "
     r"position. What is zero by structure is left out."
+)
+_SWINGING = (
+    "The joints are found one after another from the base. For a joint that turns, a direction "
+    "fixed in its link stays across the vector to the connection point: across the joint's axis "
+    r"this vector has the length $`K_j`$, and its components over the length are cosine and sine "
+    r"of the angle from the reference direction; $`\sigma_j`$, the sign of the length, is that of "
+    r"the home position."
 )
 _ITERATED = (
     r"Not every joint of this leg has a closed form, so its displacements are found together, by "

@@ -14,6 +14,7 @@ closed form by this route, and the reason is told.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,6 +55,8 @@ class InverseKinematics:
         branches: roots whose sign is that of home.
         x: from the origin of a joint to the connection point, seen from the base.
         S: from the base point to the connection point.
+        swings: all joints that turn swing the connection point in a plane across their axes, so
+            that its components there give their angles.
     """
 
     q: dict[int, Any]
@@ -62,6 +65,7 @@ class InverseKinematics:
     branches: list[Branch]
     x: dict[int, Vector]
     S: Vector = ZeroVector
+    swings: bool = False
 
     @property
     def is_closed(self) -> bool:
@@ -93,7 +97,14 @@ def invert(
             solver._given(j, x)
     for j in range(1, g.count + 1):
         x = solver.joint(j, x)
-    return InverseKinematics(solver.q, solver.methods, solver.reasons, solver.branches, solver.x)
+    return InverseKinematics(
+        solver.q,
+        solver.methods,
+        solver.reasons,
+        solver.branches,
+        solver.x,
+        swings=bool(solver.swings) and all(solver.swings),
+    )
 
 
 def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> InverseKinematics:
@@ -162,7 +173,7 @@ disc_#           | \Delta_{#}            | LOOP_CLOSURE
 root_#           | \delta_{#}            | LOOP_CLOSURE
     root, with the sign of the branch
 root_#:amplitude | K_{#}                 | LOOP_CLOSURE
-    amplitude, with the sign of the branch
+    amplitude, the length across axis #, with the sign of the branch
 root_#:nearest   | K_{#}                 | LOOP_CLOSURE
     amplitude: off the manifold the nearest angle is taken
 xi_#             | \mathbf S^r_{#}       | LOOP_CLOSURE RESOLVED
@@ -174,6 +185,23 @@ px_#:slide       | S^e_{#}               | LOOP_CLOSURE
 disc_#:slide     | \Delta_{#}            | LOOP_CLOSURE
     discriminant of the distance equation
 """)
+
+
+@dataclass(frozen=True)
+class _Resolved:
+    """The vector to the connection point in the canonical axes that a joint opens.
+
+    Attributes:
+        group: number of that joint.
+        parts: along x, y, z.
+    """
+
+    group: int
+    parts: tuple[Any, Any, Any]
+
+    def along(self, direction: Sequence[Any]) -> Any:
+        """Component along a direction given in these axes."""
+        return sp.Add(*(d * part for d, part in zip(direction, self.parts, strict=True)))
 
 
 class _Solver:
@@ -194,12 +222,15 @@ class _Solver:
         self.reasons: dict[int, str] = {}
         self.branches: list[Branch] = []
         self.x: dict[int, Vector] = {}
+        self.resolved: _Resolved | None = None
+        self.swings: list[bool] = []
+        self.link_axes: dict[int, tuple[Vector, Vector]] = {}
 
     def joint(self, j: int, x: Vector) -> Vector:
         """Find joint j; returns the vector from joint j+1's origin to the connection point."""
         g = self.g
         self.x[j] = x
-        if g.is_extra(j):
+        if g.is_extra(j) or j in self.q:
             pass
         elif g.is_unseen(j):
             self._orient(j)
@@ -209,7 +240,9 @@ class _Solver:
                 self._angle_of_displacement(j)
         else:
             x = self._turn(j, x)
-        x = x - self.q[j] * g.slide(j) - g.offset[j + 1]
+        before, x = x, x - self.q[j] * g.slide(j) - g.offset[j + 1]
+        if x != before or g.is_extra(j) or g.is_unseen(j):
+            self.resolved = None
         if j < g.count:
             x = self.eq.named("x_#", x, j + 1, body=g.frame("axes", g.group[j]))
         return x
@@ -334,56 +367,100 @@ class _Solver:
 
     def _link_axes(self, j: int) -> tuple[Vector, Vector]:
         """x and y axes of the canonical frame that joint j opens."""
-        frame = self.g.frame("axes", j)
-        x = self.eq.give("link_x_#", frame, _ALONG_X, j)
-        return x, self.eq.give("link_y_#", frame, _ALONG_Y, j)
+        if j not in self.link_axes:
+            frame = self.g.frame("axes", j)
+            x = self.eq.give("link_x_#", frame, _ALONG_X, j)
+            self.link_axes[j] = x, self.eq.give("link_y_#", frame, _ALONG_Y, j)
+        return self.link_axes[j]
 
     def _projection(self, j: int, x: Vector, u: Vector, value: Any, method: str) -> Vector:
         """Solve u . x = value for the angle of joint j, u turning with link j."""
         g, e = self.g, self.g.e[j]
-        A, B = self._in_turning_plane(j, x)
-        n, m = self._link_axes(j)
         u_n, u_m, along_axis = self._pattern(j, method, u)
+        fixed = value == 0 and along_axis == 0 and {abs(u_n or 0), abs(u_m or 0)} == {0, 1}
+        self.swings.append(fixed and method == "linear")
+        A, B, axial = self._in_turning_plane(j, x, named=not fixed)
         if u_n is None:
-            u_n = self._constant_of_link("un_#", j, Dot(u, n))
+            u_n = self._constant_of_link("un_#", j, Dot(u, self._link_axes(j)[0]))
         if u_m is None:
-            u_m = self._constant_of_link("um_#", j, Dot(u, m))
-        K = self.eq.named("Kc_#", u_n * A + u_m * B, j)
-        N = self.eq.named("Ks_#", u_n * B - u_m * A, j)
-        along = sp.S.Zero if along_axis == 0 else Dot(u, e) * Dot(e, x)
+            u_m = self._constant_of_link("um_#", j, Dot(u, self._link_axes(j)[1]))
+        K, N = u_n * A + u_m * B, u_n * B - u_m * A
+        if not fixed:
+            K, N = self.eq.named("Kc_#", K, j), self.eq.named("Ks_#", N, j)
+        along = sp.S.Zero if along_axis == 0 else Dot(u, e) * axial
         C = self.eq.named("Kr_#", value - along, j)
-        root = self._turned(j, K, N, C, method)
+        root = self._turned(j, K, N, C, method, reaches=fixed and u_m == 1 and self._reaches(j))
         x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
         length2 = self._constant_of_link("uu_#", j, u_n**2 + u_m**2)
-        value = (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e
-        resolved: Vector = self.eq("xi_#", value, j, body=g.frame("axes", j))
+        parts = x_n / length2, x_m / length2, axial
+        self.resolved = _Resolved(j, parts)
+        if self._goes_on(j):
+            return x
+        n, m = self._link_axes(j)
+        resolved: Vector = self.eq(
+            "xi_#", parts[0] * n + parts[1] * m + axial * e, j, body=g.frame("axes", j)
+        )
         return resolved
 
-    def _in_turning_plane(self, j: int, x: Vector) -> tuple[Any, Any]:
-        """Components of x along and across the direction from which joint j's angle counts."""
-        reference, across = self._turn_axes(j)
-        A = self.eq.named("px_#", Dot(reference, x), j)
-        return A, self.eq.named("py_#", Dot(across, x), j)
+    def _goes_on(self, j: int) -> bool:
+        """Whether the joint after j is found from the components in link j's axes alone."""
+        g, k = self.g, j + 1
+        if k > g.count or g.offset[k] != ZeroVector or g.is_extra(k) or g.is_unseen(k):
+            return False
+        if g.turns(k):
+            found = None if g.slides(k) else self._invariant(k)
+            return found is not None and found[0] == "linear" and k in g.turn_axes
+        return k in self.q
 
-    def _turned(self, j: int, K: Any, N: Any, C: Any, method: str) -> Any:
+    def _in_turning_plane(self, j: int, x: Vector, *, named: bool) -> tuple[Any, Any, Any]:
+        """Components of x along and across the direction from which joint j's angle counts.
+
+        And along the joint's axis.
+        """
+        g, known = self.g, self.resolved
+        if known is not None and known.group == g.group[j - 1] and j in g.turn_axes:
+            A, B, axial = (known.along(g.turn_axes[j][k::3]) for k in range(3))
+        else:
+            reference, across = self._turn_axes(j)
+            A, B, axial = Dot(reference, x), Dot(across, x), Dot(g.e[j], x)
+        if named:
+            A, B = self.eq.named("px_#", A, j), self.eq.named("py_#", B, j)
+        return A, B, axial
+
+    def _turned(self, j: int, K: Any, N: Any, C: Any, method: str, *, reaches: bool = False) -> Any:
         """Angle of joint j from K cos + N sin = C; returns the root, signed by the branch."""
         g = self.g
         power = {"linear": 1, "sphere": 2, "orientation": 0}[method]
         regular = Condition(Trouble.SINGULAR, K * K + N * N, g.size ** (2 * power), 2)
-        rho2 = self.eq.named("rho2_#", K * K + N * N, j, conditions=(regular,))
         sigma = self.eq.note("branch_#", j)
         c, s = sp.Symbol(g.name(f"c_{j}"), real=True), sp.Symbol(g.name(f"s_{j}"), real=True)
         self.branches.append(Branch(sigma, j, K * s - N * c, power))
         if C == 0:
-            amplitude = sigma * sp.sqrt(rho2)
-            root = self.eq.named("root_#:amplitude", amplitude, j)
+            root = self._amplitude(j, sigma * sp.sqrt(K * K + N * N), regular, reaches=reaches)
             self._cosine_sine(j, -N / root, K / root)
             return root
+        rho2 = self.eq.named("rho2_#", K * K + N * N, j, conditions=(regular,))
         real = Condition(Trouble.UNREACHABLE, rho2 - C**2)
         discriminant = self.eq.named("disc_#", rho2 - C**2, j, conditions=(real,))
         root = self.eq.named("root_#", sigma * sp.sqrt(discriminant), j)
         self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
         return root
+
+    def _amplitude(self, j: int, value: Any, regular: Condition, *, reaches: bool) -> Any:
+        """The root where the right-hand side is zero: the length of a leg that extends along it."""
+        if not reaches:
+            return self.eq.named("root_#:amplitude", value, j, conditions=(regular,))
+        self.methods[j + 1] = "direct"
+        self.q[j + 1] = self.eq("q_#", value, j + 1, conditions=(regular,))
+        return self.q[j + 1]
+
+    def _reaches(self, j: int) -> bool:
+        """Whether the next joint, the last, extends the leg from joint j to its end."""
+        g, k = self.g, j + 1
+        if k != g.count or g.turns(k) or g.is_extra(k):
+            return False
+        along = g.axis_pattern(j, k)
+        return g.offset[k] == g.offset[k + 1] == ZeroVector and along == (1, 0, 0)
 
     def _pattern(self, j: int, method: str, u: Vector) -> tuple[Any, Any, Any]:
         """Components of u in link j's canonical axes where the structure fixes them, else None."""
@@ -430,6 +507,7 @@ class _Solver:
         along, aside = Dot(tip, n), Dot(tip, m)
         length2 = self._constant_of_link("uu_#", j, along**2 + aside**2)
         self.methods[j] = "direct"
+        self.swings.append(False)
         if not self.constrained:
             amplitude = length2
         else:
@@ -449,6 +527,7 @@ class _Solver:
             return
         link, platform = g.pairs[0]
         self.methods[j] = "orientation"
+        self.resolved = None
         self._projection(j, platform, link, sp.S.Zero, "orientation")
 
     def _given(self, j: int, x: Vector) -> Vector:

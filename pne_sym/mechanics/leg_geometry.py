@@ -114,6 +114,8 @@ class LegGeometry:
         x_axis: canonical x axis by group.
         zero_turn: (cos, sin) of the angle from turn frame to canonical frame at
             zero displacement, by joint number.
+        turn_axes: axes of the turn frame as columns in the canonical axes before it, 0, 1, -1
+            by rows; by joint number, where the structure fixes them.
         base_point, platform_point: b and q.
         pitch: pitch symbols of helical joints, by joint number.
         pairs: where the leg transmits moments, directions (fixed in the last link,
@@ -140,6 +142,7 @@ class LegGeometry:
     group: dict[int, int] = field(default_factory=dict)
     x_axis: dict[int, VectorSymbol] = field(default_factory=dict)
     zero_turn: dict[int, tuple[Any, Any]] = field(default_factory=dict)
+    turn_axes: dict[int, tuple[Any, ...]] = field(default_factory=dict)
     pitch: dict[int, Any] = field(default_factory=dict)
     base_point: Any = None
     platform_point: Any = None
@@ -401,8 +404,12 @@ class _Builder:
             self._give_axis(j)
         self._note_straight_ends()
 
-    def _candidates(self, group: int) -> list[tuple[Any, Array]]:
-        """Directions fixed in the group worth an axis: (spec components, numeric per leg)."""
+    def _candidates(self, group: int, z: Any) -> list[tuple[Any, Array]]:
+        """Directions fixed in the group worth an axis: (spec components, numeric per leg).
+
+        Of a next axis across z, the direction across both: along it lie the links beyond, if they
+        swing about that axis.
+        """
         found: list[tuple[Any, Array]] = []
         members = [j for j in self.g.group if self.g.group[j] == group]
         slides = [j for j in members if j and not self.g.turns(j)]
@@ -411,7 +418,8 @@ class _Builder:
             for j in range(1, self.g.count + 1)
             if self.g.turns(j) and self.g.group[j - 1] == group and j != group
         ]
-        found += [(self.spec[j], self._axes_of(j)) for j in slides + following]
+        found += [(self.spec[j], self._axes_of(j)) for j in slides]
+        found += [self._across(j, z) for j in following]
         axes = []
         for j in [j + 1 for j in members]:
             along = [i for i, v in enumerate(self._offset(j)) if v != 0.0]
@@ -419,9 +427,21 @@ class _Builder:
         tiles = self.type.count, 1
         return found + [(_unit(axis), np.tile(axis, tiles)) for axis in (*axes, *_E)]
 
+    def _across(self, j: int, z: Any) -> tuple[Any, Array]:
+        """The direction across z and axis j if that turns alone, both coordinate ones; else it."""
+        axis, tiles = self.spec[j], (self.type.count, 1)
+        if (
+            self.g.slides(j)
+            or not all(c.is_Integer for c in (*axis, *z))
+            or not any(sp.Matrix(axis).cross(sp.Matrix(z)))
+        ):
+            return axis, self._axes_of(j)
+        both = np.cross(np.array(axis, dtype=float), np.array(z, dtype=float))
+        return _unit(both), np.tile(both, tiles)
+
     def _canonical(self, group: int, z: Any, z_values: Array) -> tuple[Any, Array, bool]:
         """Canonical x axis: (spec components or None, numeric per leg, is exact)."""
-        for components, values in self._candidates(group):
+        for components, values in self._candidates(group, z):
             along = np.sum(values * z_values, axis=1)
             if np.any(np.abs(np.abs(along) - 1) < 1e-6):
                 continue
@@ -483,6 +503,9 @@ class _Builder:
         self.c[j] = matrix
         local = np.einsum("lji,lj->li", c_previous, z_values)  # axis j in the previous frame
         reference, tilt = _reference(local)
+        zero = np.einsum("lji,lj->li", c_previous, matrix[:, :, 0])
+        if vectors is None and _is_exact(zero) and _is_exact(local):
+            reference = zero  # so that the angle is the joint's own
         turn = np.stack([reference, np.cross(local, reference), local], axis=2)
         spec_reference = np.einsum("lij,lj->li", c_previous, reference)
         cosine = np.sum(spec_reference * matrix[:, :, 0], axis=1)
@@ -493,7 +516,8 @@ class _Builder:
         turn_name, axes_name = self.g.frame("turn", j), self.g.frame("axes", j)
         parent = self.g.frame("axes", previous)
         if exact:
-            frames.append(Frame(turn_name, parent, _pattern(turn)))
+            self.g.turn_axes[j] = _pattern(turn)
+            frames.append(Frame(turn_name, parent, self.g.turn_axes[j]))
             self.g.zero_turn[j] = (sp.Integer(round(cosine[0])), sp.Integer(round(sine[0])))
         else:
             self._general_turn(j, previous, turn, tilt)

@@ -20,9 +20,9 @@ from pne_sym.vector import (
     Axial,
     Compose,
     Cross,
-    Dot,
     Identity,
     TensorSymbol,
+    Trace,
     Vector,
     VectorSymbol,
     ZeroVector,
@@ -45,10 +45,6 @@ Sigma_#   | \boldsymbol\Sigma_{#} | LUMPING constant symmetric
     second moment of mass of the links that turn with link #
 h_group_# | \mathbf h^\Sigma_{#}  | LUMPING constant
     first moments of the links that turn with link #
-unit%_#   | \mathbf{i}_{&}        | given
-    coordinate direction
-trace_J_# | j_{#}                 | LUMPING constant
-    half the trace of that inertia tensor
 """)
 
 
@@ -179,20 +175,7 @@ class LinkWriter:
         J = tensor_sum(b.inertia for b in members)
         if not isinstance(J, TensorSymbol):
             J = self.eq("J_group_#", J, group, body=frame)
-        second = self._half_trace(J, group) * Identity - J
-        return J, self.eq("Sigma_#", second, group, body=frame)
-
-    def _half_trace(self, J: Any, group: int) -> Any:
-        """Half the trace of the group's inertia."""
-        quantity = self.book.notation[J.name]
-        axes = []
-        for k in range(3):
-            components = [sp.Integer(int(i == k)) for i in range(3)]
-            frame = quantity.body or "base"
-            axes.append(self.eq.give("unit%_#", frame, components, group, k, k + 1))
-        trace = sp.Add(*(Dot(a, J @ a) for a in axes))
-        latex = quantity.latex.replace(r"\mathbf J", "j")
-        return self.eq("trace_J_#", trace / 2, group, latex=latex)
+        return J, self.eq("Sigma_#", Trace(J) / 2 * Identity - J, group, body=frame)
 
     def _gathered_moments(
         self, members: Sequence[LinkBody], acceleration: dict[int, Any]

@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pne_sym.derivation import Derivation, Quantity, Role, full_name, names_in
+from pne_sym.derivation import Derivation, Quantity, Role, full_name, full_names, names_in
 from pne_sym.model.entry import nearest
 from pne_sym.model.errors import SpecError, show
 from pne_sym.model.manipulator import Manipulator
@@ -129,10 +129,9 @@ def _in_all_types(
     """The author's keys, quantities, symbols; a key without a leg type is of all that have it."""
     own = {full_name(derivation, key) for key, _ in manipulator.symbols}
     for key, text in manipulator.symbols:
-        name = full_name(derivation, key)
-        typed = [f"{info.name}_{key}" for info in derivation.leg_types]
-        found = [] if name in places else [n for n in typed if n in places]
-        yield from ((key, n, text) for n in (found or [name]) if n == name or n not in own)
+        names = full_names(derivation, key)
+        found = [n for n in names if n in places] or [full_name(derivation, key)]
+        yield from ((key, n, text) for n in found if len(names) == 1 or n not in own or n == key)
 
 
 def _check_name(

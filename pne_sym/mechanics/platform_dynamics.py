@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import sympy as sp
+
 from pne_sym.derivation import Book
 from pne_sym.mechanics.legs import Leg, plus_sums
 from pne_sym.mechanics.lumping import PlatformInertia
@@ -18,7 +20,7 @@ from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.mechanics.wrench_columns import ColumnWriter
 from pne_sym.model.kinematics import TaskSpace
-from pne_sym.vector import Cross, Vector, ZeroVector, vector_sum
+from pne_sym.vector import Cross, Dot, LinearForm, Vector, ZeroVector, linear_form, vector_sum
 
 _TERMS = glossary(r"""
 a_t    | \mathbf a_t          | RATE     | Eq. 32
@@ -31,7 +33,7 @@ R_t    | \mathbf R_t          | ASSEMBLY | Eq. 32
     force that actuators and external wrench must give
 R_a    | \mathbf R_\alpha     | ASSEMBLY | Eq. 33
     moment that actuators and external wrench must give
-M_ya_# | \mathbf M_{y\alpha,#} | ASSEMBLY | Eqs. 6, 7
+M_ya_# | \mathbf M_{y\alpha,#} | RULES    | Eqs. 6, 7
     coupling of extra joint # with the rotation of the platform
 """)
 _EQUILIBRIUM = (
@@ -128,17 +130,25 @@ class PlatformWriter:
     def _extra_row(self, leg: Leg, j: int, rows: tuple[int, ...]) -> None:
         """Row and column of an extra coordinate (Eqs. 6, 7)."""
         form = leg.dynamics.extra_rows[j][1]
-        coefficient = form.coefficients.get(leg.motion.a_p, ZeroVector)
-        turning = form.coefficients.get(self.p.alpha, ZeroVector)
         self.put.leg_scalar("Z", leg, form.remainder, rows)
-        if coefficient != ZeroVector or turning != ZeroVector:
+        own = self._by_platform(leg, form)
+        if own.coefficients:
             if self.space.translates:
-                self.put.leg_row("M", leg, coefficient, 0, rows)
+                self.put.leg_row("M", leg, own.coefficients[self.p.t_ddot], 0, rows)
             if self.space.rotates:
-                moment = Cross(leg.g.platform_point, coefficient) + turning
-                arm = Writer(self.book, leg.g, _TERMS)("M_ya_#", moment, j, body="base")
+                write = Writer(self.book, leg.g, _TERMS)
+                rules = LinearForm({}, sp.S.Zero, own.steps)
+                arm = write("M_ya_#", own.coefficients[self.p.alpha], j, body="base", linear=rules)
                 self.put.leg_row("M", leg, arm, 3, rows)
         for k, columns in self.put.extras_of(leg):
             value = form.coefficients.get(leg.motion.ydd[k], 0)
             if k >= j and value != 0:
                 self.put.leg_entry("M", leg, value, rows, columns, mirrored=k != j)
+
+    def _by_platform(self, leg: Leg, form: LinearForm) -> LinearForm:
+        """A leg's form collected anew, its connection point moving with the platform."""
+        a_p, alpha = leg.motion.a_p, self.p.alpha
+        given = (e.rhs for e in self.book.all_equations() if e.lhs == a_p)
+        moved = {a_p: next(given, a_p), alpha: alpha}
+        parts = (Dot(form.coefficients.get(x, ZeroVector), to) for x, to in moved.items())
+        return linear_form(sp.Add(*parts), [x for x in (self.p.t_ddot, alpha) if x != ZeroVector])

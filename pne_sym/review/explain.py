@@ -21,6 +21,7 @@ from pne_sym.derivation import (
     Equation,
     Quantity,
     full_name,
+    full_names,
     names_in,
     rotations_by_place,
 )
@@ -74,8 +75,8 @@ class Explanation:
 def find_equation(derivation: Derivation, wanted: str) -> Equation:
     """The equation of an id (ups-rho2_1) or of the name that it defines.
 
-    The name may lack its leg type where only one type has it; the fifth equation of a
-    chapter is found under the chapter's id, too (ups-K5).
+    The name may lack its leg type where only one type has it (`find_equations` knows all); the
+    fifth equation of a chapter is found under the chapter's id, too (ups-K5).
 
     Raises:
         UnknownEquationError: there is none; the message has the nearest ids and names.
@@ -100,6 +101,13 @@ def find_equation(derivation: Derivation, wanted: str) -> Equation:
     close = difflib.get_close_matches(wanted[:60], ids, n=4, cutoff=0.4)
     hint = f"; nearest: {', '.join(close)}" if close else ""
     raise UnknownEquationError(f"no equation {wanted[:60]!r}{hint}; without it all are listed")
+
+
+def find_equations(derivation: Derivation, wanted: str) -> list[Equation]:
+    """The same; a name without its leg type is that of every type that has it."""
+    names = full_names(derivation, wanted)
+    found = [e for e in (*derivation.equations(), *derivation.rotations()) if e.name in names]
+    return found if len(found) > 1 else [find_equation(derivation, wanted)]
 
 
 def explain(bundle: Bundle, wanted: str, *, transitively: bool = False) -> Explanation:

@@ -10,10 +10,11 @@ from pne_sym.backends import registry
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.emission import emit_target
 from pne_sym.backends.target import Syntax, Target
+from pne_sym.derivation import Equation
 from pne_sym.model.full_form import to_full_form
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.review.code import Passage, passages, program_passages, why_without
-from pne_sym.review.explain import Explanation, Related, explain, find_equation
+from pne_sym.review.explain import Explanation, Related, explain, find_equations
 from pne_sym.review.plain import plain
 
 _WIDTH = 98
@@ -55,11 +56,19 @@ def stage_lines(
     if wanted is None:
         yield from _whole(bundle, stage)
         return
+    for k, equation in enumerate(find_equations(bundle.derivation, wanted)):
+        if k:
+            yield ""
+        yield from _equation_lines(bundle, stage, equation, transitively=transitively)
+
+
+def _equation_lines(
+    bundle: Bundle, stage: str | None, equation: Equation, *, transitively: bool
+) -> Iterator[str]:
     if stage in (None, "derivation"):
-        yield from explanation(explain(bundle, wanted, transitively=transitively))
+        yield from explanation(explain(bundle, equation.id, transitively=transitively))
     if stage == "derivation":
         return
-    equation = find_equation(bundle.derivation, wanted)
     if stage in (None, "program"):
         found = program_passages(bundle, equation.id)
     else:

@@ -127,6 +127,7 @@ _NODES: dict[type, Any] = {
     n.Dot: lambda a, b: (f"{_wrap(a, _PRODUCT)} . {_wrap(b, _PRODUCT)}", _CROSS),
     n.Skew: lambda a: (f"[{plain(a)}]x", _ATOM),
     n.Axial: lambda a: (f"axial({plain(a)})", _ATOM),
+    n.Trace: lambda a: (f"trace({plain(a)})", _ATOM),
     n.Apply: lambda a, b: (f"{_wrap(a, _ATOM)} * {_wrap(b, _ATOM)}", _PRODUCT),
     n.Compose: lambda a, b: (f"{_wrap(a, _ATOM)} * {_wrap(b, _ATOM)}", _PRODUCT),
     n.Outer: lambda a, b: (f"{_wrap(a, _ATOM)} {_wrap(b, _ATOM)}^T", _PRODUCT),

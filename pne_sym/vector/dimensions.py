@@ -157,6 +157,7 @@ _PRODUCTS = (
     n.TensorScale,
     n.Cross,
     n.Dot,
+    n.Trace,
     n.Apply,
     n.Compose,
     n.Transpose,

@@ -77,6 +77,7 @@ _OPERATIONS: dict[type, Any] = {
     n.TensorScale: lambda s, a: s * a,
     n.Cross: np.cross,
     n.Dot: lambda a, b: float(np.dot(a, b)),
+    n.Trace: lambda t: float(np.trace(t)),
     n.Apply: lambda t, a: t @ a,
     n.Compose: lambda t, s: t @ s,
     n.Transpose: lambda t: t.T,

@@ -244,6 +244,15 @@ class Dot(_VectorScalar):
         return factor_a * factor_b * super().__new__(cls, a, b)
 
 
+class Trace(_VectorScalar):
+    """The trace of a tensor."""
+
+    def __new__(cls, a: Tensor) -> Scalar:
+        """Build simplified."""
+        factor, a = split_tensor_scale(a)
+        return sp.S.Zero if a == ZeroTensor else factor * super().__new__(cls, a)
+
+
 class DualScalar(_VectorScalar):
     """Moment part m_ki of reciprocal wrench k; arguments as of `DualVector`, with i after k."""
 

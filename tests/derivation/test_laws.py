@@ -23,7 +23,6 @@ LEDGER = """
 ASSEMBLY     | Eq. 32                | R_t
 ASSEMBLY     | Eq. 33                | R_a
 ASSEMBLY     | Eq. 34                | H_a_# Hk_a_#
-ASSEMBLY     | Eqs. 6, 7             | M_ya_#
 DEFINITION   |                       | B_# B_#_o B_p Jc_# W_# W_p hc_#
 ENERGY       |                       | potential
 ENERGY       | beyond the paper      | stored_#
@@ -48,7 +47,7 @@ LUMPING      |                       | J_# J_group_# J_star Sigma_# b_c h_# h_gr
 LIMIT        | beyond the paper      | margin_# off_# off#_#
 LUMPING      |                       | half_# legs_size m_star middle_# per_turn_# rho_tip_# size
 LUMPING      |                       | size_# spread vs#_end_p
-LUMPING      |                       | trace_J_# trace_J_group_# un_# um_# uu_# vs#_# end_l#
+LUMPING      |                       | un_# um_# uu_# vs#_# end_l#
 MOVING_FRAME | beyond the paper      | B_b S_ddot_b a_b# a_m f_b g_b g_f mu_b omega_b_# zeta_b_#
 DEFINITION   |                       | W_b_#
 NEWTON       |                       | P_c_# T_#
@@ -73,6 +72,7 @@ REDUCTION    | Eq. 3                 | c c_m
 ROTOR        | beyond the paper      | rotor_# motor_#
 RULES        | Eq. 34                | M_tt M_ta M_aa Z_p Z_t Z_q Z_a
 RULES        | Eq. 4                 | Q U
+RULES        | Eqs. 6, 7             | M_ya_#
 SPRING       | beyond the paper      | spring_#
 """
 """Law, reference and quantities; those that end with _o, and d_..., are of Eq. 4."""

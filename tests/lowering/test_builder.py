@@ -160,7 +160,8 @@ def test_of_a_root_with_a_sign_the_square_is_what_stands_under_it() -> None:
     b.signs.add(sign)
     root = b.let(sp.sqrt(b.add((x, y))))
     signed, scaled = b.mul(sign, root), b.mul(x, root)
-    assert b.mul(signed, signed) == b.add((x, y))
+    assert b.mul(signed, signed) == b.mul(-signed, -signed) == b.add((x, y))
+    assert b.mul(-signed, signed) == -b.add((x, y))
     assert value(b.mul(scaled, scaled), run(b.statements, {x: 3.0, y: 2.0, sign: -1.0})) == (
         pytest.approx(45.0)
     )

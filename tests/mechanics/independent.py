@@ -387,11 +387,6 @@ def _j_group(f: Facts, j: int) -> Any:
     return sum(f.reference_tensor(k) for k in f.members(j) if f.has_mass(k))
 
 
-@value_of(r"trace_J_(\d+)")
-def _trace(f: Facts, j: int) -> Any:
-    return 0.5 * np.trace(_j_group(f, j))
-
-
 @value_of(r"Sigma_(\d+)")
 def _sigma(f: Facts, j: int) -> Any:
     total = _j_group(f, j)
@@ -412,7 +407,8 @@ def _py(f: Facts, j: int) -> Any:
 
 def _projected(f: Facts, j: int) -> Any:
     """What the inverse kinematics of joint j projects on directions fixed in link j - 1."""
-    used = [f.names.stem(n) for n in f.names.defined[f.names.named(f"px_{j}")].uses]
+    found = (f.names.defined.get(f.names.named(f"p{axis}_{j}")) for axis in "xy")
+    used = [f.names.stem(name) for equation in found if equation for name in equation.uses]
     platform_axis = f.leg.platform_joint.axis_platform
     if any(name.startswith("end_p") for name in used) and platform_axis is not None:
         return f.platform.rotation @ np.array(platform_axis)  # the joint turns an axis into place

@@ -102,9 +102,9 @@ def test_a_condition_that_changed_is_found() -> None:
     def spoilt(e):
         return replace(e, conditions=tuple(replace(c, value=-c.value) for c in e.conditions))
 
-    found = change("stewart", {"ups_rho2_1": spoilt})
-    assert [e.name for e in found.origins] == ["ups_rho2_1"]
-    assert "condition" in of(found, "ups_rho2_1").note
+    found = change("stewart", {"ups_root_1": spoilt})
+    assert [e.name for e in found.origins] == ["ups_root_1"]
+    assert "condition" in of(found, "ups_root_1").note
 
 
 def test_a_swapped_index_of_an_output_is_found() -> None:

@@ -79,11 +79,11 @@ def test_statements_follow_the_derivation() -> None:
 
 
 def test_what_a_value_needs_first_names_it() -> None:
-    """1/root_2 is needed long before it is a component of w_2; Q has its components."""
+    """1/q_3 is needed long before it is a component of w_2; Q has its components."""
     f = bundle(catalogue("stewart")).program.functions["dynamics"]
     names = {str(a.target) for block in f.blocks for a in block.assignments}
     of_leg = {"Q_xx", "Q_xy", "Q_zz", "U_x", "S_dot_z"}
-    assert {f"ups_{name}" for name in of_leg} | {"h_star_x", "inv_ups_root_2"} <= names
+    assert {f"ups_{name}" for name in of_leg} | {"h_star_x", "inv_ups_q_3"} <= names
 
 
 FAULTS: dict[str, Callable[[Any], Any]] = {

@@ -42,11 +42,14 @@ REWRITINGS = {
     "the other form": {"ups_bias": as_first_form, "ups_phi_3": as_first_form},
     "tensors for cross products": {"ups_phi_3_o": with_rhs(skewed)},
     "a root taken apart": {
-        "ups_root_1": with_rhs(
+        "ups_q_3": with_rhs(
             lambda rhs: (
                 rhs.args[0]
                 * sp.sqrt(
-                    sp.Symbol("ups_px_1", real=True) ** 2 + sp.Symbol("ups_py_1", real=True) ** 2
+                    sum(
+                        n.Dot(n.VectorSymbol(f"ups_{axis}"), n.VectorSymbol("ups_S")) ** 2
+                        for axis in ("ref_1", "across_1", "e_1")
+                    )
                 )
             )
         )

@@ -22,6 +22,7 @@ from pne_sym.vector import (
     TensorAdd,
     TensorScale,
     TensorSymbol,
+    Trace,
     Transpose,
     VectorAdd,
     VectorLegSum,
@@ -208,6 +209,7 @@ def test_simplification_keeps_the_value() -> None:
             (Transpose(t), nt.T),
             (Outer(u, v), np.outer(nu, nv)),
             (Dot(u, v), nu @ nv),
+            (Trace(t), np.trace(nt)),
             (s * t - t, ns * nt - nt),
         ]
         pairs += [

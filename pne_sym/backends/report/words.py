@@ -52,7 +52,8 @@ MARKS: tuple[tuple[str, str], ...] = (
             r"=\mathbf a\,(\mathbf b\cdot\mathbf c)`$"
         ),
     ),
-    (r"\mathbf T^{\mathsf T},\ \mathbf E", "transposed tensor, identity"),
+    (r"\mathbf T^{\mathsf T},\ \mathrm{tr}(\mathbf T)", "transposed tensor, trace"),
+    (r"\mathbf E", "identity tensor"),
     (
         r"\mathrm{ax}(\mathbf T)",
         r"axial vector, components $`T_{32}-T_{23},\ T_{13}-T_{31},\ T_{21}-T_{12}`$",
