@@ -59,7 +59,7 @@ class Guard:
 
     def rewritten(self, changes: Mapping[Any, Any]) -> Guard:
         """With other expressions for its values; of a tested pivot the sign says nothing."""
-        value, scale = (sp.sympify(e).xreplace(changes) for e in (self.value, self.scale))
+        value, scale = (algebra.replaced(sp.sympify(e), changes) for e in (self.value, self.scale))
         if self.trouble == "singular":
             value = algebra.signed(value)[1]
         return replace(self, value=value, scale=scale)
@@ -118,7 +118,9 @@ class Builder:
 
     def stage_of(self, expr: Any) -> Stage:
         """Stage at which an expression can be computed."""
-        return algebra.joined(frozenset(self._stage[s] for s in algebra.symbols(expr)))
+        if expr.is_Symbol:
+            return self._stage[expr]
+        return algebra.joined(frozenset([self._stage[s] for s in algebra.symbols(expr)]))
 
     def _fresh(self, hint: str) -> str:
         """A name that no other symbol has: the hint, or the hint and a number."""

@@ -125,8 +125,9 @@ class Meaning:
         """`lowered`, by the names that values have in the first function that has them."""
 
         def named(atom: Any) -> Any:
-            called = {s: self._called.get(s, s) for s in atom.free_symbols}
-            return atom.xreplace({s: -c if s in self._turned else c for s, c in called.items()})
+            called = {s: self._called.get(s, s) for s in algebra.symbols(atom)}
+            signs = {s: -c if s in self._turned else c for s, c in called.items()}
+            return algebra.replaced(atom, signs)
 
         return {
             name: (frame, tuple(named(sp.sympify(atom)) for atom in found))
