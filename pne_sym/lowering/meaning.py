@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import sympy as sp
@@ -162,7 +161,7 @@ class Meaning:
             equation = self._id.get(part.quantity, need) if part else need
             own = s.hint.removeprefix(f"{s.stage.leg_type}_") in OWN_NAMES
             hint = of.name if of else s.hint if own else ""
-            found.append(replace(s, equation=equation, hint=hint))
+            found.append(s._replace(equation=equation, hint=hint))
             self._note(needed, s.expr, equation)
         return self.sorted(found[::-1])
 
