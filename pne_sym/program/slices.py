@@ -79,16 +79,16 @@ def slices(function: Function) -> Slices:
 
 
 @lru_cache(1 << 16)
-def names(expr: Any) -> frozenset[str]:
-    """Names of the symbols in an expression."""
+def read_in(expr: Any) -> frozenset[str]:
+    """Names that an expression reads."""
     if expr.is_Symbol:
         return frozenset((expr.name,))
-    return frozenset[str]().union(*map(names, expr.args))
+    return frozenset[str]().union(*map(read_in, expr.args))
 
 
 def read_by(assignments: tuple[Assignment, ...]) -> set[str]:
     """Names on the right-hand sides of assignments."""
-    return set[str]().union(*(names(a.expr) for a in assignments))
+    return set[str]().union(*(read_in(a.expr) for a in assignments))
 
 
 def symbols(block: Block | None) -> set[str]:
@@ -99,7 +99,7 @@ def symbols(block: Block | None) -> set[str]:
     expressions += [sp.sympify(s.value) for s in block.stores]
     expressions += [sp.sympify(v) for _, v in block.sums]
     expressions += [sp.sympify(e) for c in block.checks for e in (c.value, c.scale)]
-    return set[str]().union(*map(names, expressions))
+    return set[str]().union(*map(read_in, expressions))
 
 
 def columns(shape: tuple[int, ...]) -> int:
