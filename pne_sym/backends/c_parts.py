@@ -32,7 +32,7 @@ from pne_sym.backends.c_text import (
 from pne_sym.backends.describe import equation_titles
 from pne_sym.backends.scalar import wrap
 from pne_sym.program.ir import Assignment, Block, Check, Function, LegInput, Store
-from pne_sym.program.slices import is_full, places_of, slices, symbols
+from pne_sym.program.slices import is_full, places_of, read_in, slices, symbols
 
 _TROUBLES = ("unreachable", "singular")
 _WORTH = 3
@@ -63,7 +63,7 @@ def statements(
             a.equation,
             [
                 *loaded(waiting, a.expr),
-                *statement(f"const real {c_name(str(a.target))} = {printer.text(a.expr)}"),
+                *statement(f"const real {c_name(a.target.name)} = {printer.text(a.expr)}"),
             ],
         )
         for a in assignments
@@ -85,8 +85,8 @@ def headed(rows: Iterable[tuple[str, list[str]]], titles: dict[str, str]) -> lis
 
 def loaded(loads: dict[str, str], *expressions: Any) -> list[str]:
     """Loads of what expressions read and is not yet at hand."""
-    names = sorted({s.name for e in expressions for s in sp.sympify(e).free_symbols} & set(loads))
-    return [f"const real {c_name(n)} = {loads.pop(n)};" for n in names]
+    read = loads.keys() & set[str]().union(*(read_in(sp.sympify(e)) for e in expressions))
+    return [f"const real {c_name(n)} = {loads.pop(n)};" for n in sorted(read)]
 
 
 class Parts:

@@ -51,7 +51,7 @@ def common_sums(blocks: Sequence[Block]) -> tuple[Block, ...]:
 
 def _parts(expr: Any, alone: dict[sp.Symbol, str]) -> tuple[list[sp.Symbol], list[Any], int]:
     """Sums by leg type that an expression adds up, no two of a type; the rest; their sign."""
-    terms = sp.Add.make_args(expr)
+    terms = () if alone.keys().isdisjoint(expr.free_symbols) else sp.Add.make_args(expr)
     for sign in (1, -1):
         parts = [sign * t for t in terms if sign * t in alone]
         if parts and len({alone[p] for p in parts}) == len(parts):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 
 from pne_sym.backends.templating import reached
 
@@ -24,6 +25,7 @@ def needed(support: str, texts: Iterable[str]) -> str:
     return "\n\n".join(dict.fromkeys(made[name] for name in names))
 
 
-def _names(pattern: re.Pattern[str], text: str) -> set[str]:
+@lru_cache(1 << 12)
+def _names(pattern: re.Pattern[str], text: str) -> frozenset[str]:
     code = re.sub(r"/\*.*?\*/", " ", text, flags=re.DOTALL)
-    return {name for groups in pattern.findall(code) for name in groups if name}
+    return frozenset(name for groups in pattern.findall(code) for name in groups if name)

@@ -39,4 +39,4 @@ def _made(node: ast.stmt) -> list[str]:
 
 def _named(node: ast.AST) -> list[str]:
     """Names that occur in a tree, in order."""
-    return [n.id for n in ast.walk(node) if isinstance(n, ast.Name)]
+    return [n.id for n in ast.walk(node) if type(n) is ast.Name]

@@ -52,7 +52,7 @@ def quotient(a: Any, b: Any) -> Any:
 @lru_cache(_KEPT)
 def inverse(a: Any) -> Any:
     """1 / a."""
-    return 1 / a
+    return sp.Pow(a, sp.S.NegativeOne, evaluate=False) if a.is_Symbol else 1 / a
 
 
 @lru_cache(_KEPT)
@@ -104,7 +104,9 @@ def _product_of(factors: tuple[Any, ...]) -> Any:
 def signed(expr: Any) -> tuple[int, Any]:
     """A sign, and the expression without it: both of x - y and y - x give the same one."""
     form = linear(expr)
-    minus = expr.could_extract_minus_sign() if form is None else is_negative(form)
+    minus = None if form is None else is_negative(form)
+    if minus is None:
+        minus = expr.could_extract_minus_sign()
     return (-1, negative(expr)) if minus else (1, expr)
 
 
@@ -151,8 +153,9 @@ def operations(expr: Any) -> int:
     if expr.is_Add:
         return inner + len(expr.args) - 1
     if expr.is_Mul:
-        factors = [a for a in expr.args if a not in (1, -1)]
-        return inner + len(factors) - 1
+        first = expr.args[0]
+        is_sign = first is sp.S.One or first is sp.S.NegativeOne
+        return inner + len(expr.args) - 1 - is_sign
     if expr.is_Pow:
         exponent = expr.exp
         if exponent.is_Integer and exponent > 0:

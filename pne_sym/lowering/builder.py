@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -29,8 +29,7 @@ def of_leg(stem: str, stage: Stage) -> str:
     return stem if not of or f"_{of}_" in f"_{stem}_" else f"{of}_{stem}"
 
 
-@dataclass(frozen=True)
-class Statement:
+class Statement(NamedTuple):
     """target = expr, computed at a stage, for an equation.
 
     A sum over the legs of a type has `total_of` instead of being an expression
@@ -59,7 +58,7 @@ class Guard:
 
     def rewritten(self, changes: Mapping[Any, Any]) -> Guard:
         """With other expressions for its values; of a tested pivot the sign says nothing."""
-        value, scale = (sp.sympify(e).xreplace(changes) for e in (self.value, self.scale))
+        value, scale = (algebra.replaced(sp.sympify(e), changes) for e in (self.value, self.scale))
         if self.trouble == "singular":
             value = algebra.signed(value)[1]
         return replace(self, value=value, scale=scale)
@@ -118,7 +117,9 @@ class Builder:
 
     def stage_of(self, expr: Any) -> Stage:
         """Stage at which an expression can be computed."""
-        return algebra.joined(frozenset(self._stage[s] for s in algebra.symbols(expr)))
+        if expr.is_Symbol:
+            return self._stage[expr]
+        return algebra.joined(frozenset([self._stage[s] for s in algebra.symbols(expr)]))
 
     def _fresh(self, hint: str) -> str:
         """A name that no other symbol has: the hint, or the hint and a number."""
@@ -141,8 +142,10 @@ class Builder:
         expr = sp.sympify(expr)
         if expr.is_Number or expr.is_Symbol:
             return expr
-        if expr.is_Mul and len(expr.args) == 2 and expr.args[0] == -1 and expr.args[1].is_Symbol:
-            return expr
+        if expr.is_Mul and len(expr.args) == 2:
+            factor, other = expr.args
+            if factor is sp.S.NegativeOne and other.is_Symbol:
+                return expr
         sign, key = algebra.signed(expr)
         known = self._value.get(key)
         if known is not None:
@@ -400,7 +403,7 @@ class Builder:
             expressions: of every statement's target.
             changes: what stands for the values in guards; of tested pivots the sign says nothing.
         """
-        self.statements = [replace(s, expr=expressions[s.target]) for s in self.statements]
+        self.statements = [s._replace(expr=expressions[s.target]) for s in self.statements]
         self.of = {s.target: s for s in self.statements}
         self.guards = [guard.rewritten(changes) for guard in self.guards]
 

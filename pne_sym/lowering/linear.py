@@ -1,11 +1,10 @@
-"""Sums of symbols with rational factors, put together as SymPy does it: same terms, same order."""
+"""Sums of terms with rational factors, put together as SymPy does it: same terms, same order."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.core.basic import ordering_of_classes
@@ -14,9 +13,8 @@ _ONE, _ZERO = sp.S.One, sp.S.Zero
 _RANKS = {name: k for k, name in enumerate(ordering_of_classes)}
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Linear:
-    """number + sum of factor times symbol; the factors are no zeros."""
+class Linear(NamedTuple):
+    """number + sum of factor times term; no factor is zero, no term is a sum or has a factor."""
 
     factors: Mapping[Any, Any]
     number: Any = _ZERO
@@ -24,19 +22,27 @@ class Linear:
 
 @lru_cache(1 << 16)
 def linear(expr: Any) -> Linear | None:
-    """The form of an expression; None if it has not this form."""
+    """The form of an expression; None if SymPy has more to do than to collect terms."""
     if expr.is_Symbol:
         return Linear({expr: _ONE})
     if expr.is_Number:
         return Linear({}, expr) if expr.is_Rational else None
     if expr.is_Mul:
-        factor, *of = expr.args
-        is_one = len(of) == 1 and of[0].is_Symbol and factor.is_Rational
-        return Linear({of[0]: factor}) if is_one else None
+        return _product(expr)
     if not expr.is_Add:
-        return None
+        is_more = not expr.args or (expr.is_Pow and expr.base.is_Number)
+        return None if is_more else Linear({expr: _ONE})
     forms = [linear(term) for term in expr.args]
     return None if any(form is None for form in forms) else _merged([f for f in forms if f])
+
+
+def _product(expr: Any) -> Linear | None:
+    factor, *others = expr.args
+    if not factor.is_Number:
+        return Linear({expr: _ONE})
+    if not factor.is_Rational or (len(others) == 1 and others[0].is_Add):
+        return None
+    return Linear({sp.Mul._from_args(others, is_commutative=True): factor})
 
 
 def _merged(forms: list[Linear]) -> Linear:
@@ -63,11 +69,12 @@ def sum_of(*forms: Linear) -> Any:
     return sp.Add._from_args(terms, is_commutative=True)
 
 
-def multiple(factor: Any, symbol: Any) -> Any:
-    """A symbol with a rational factor."""
+def multiple(factor: Any, term: Any) -> Any:
+    """A term with a rational factor."""
     if factor is _ONE or factor is _ZERO:
-        return symbol if factor is _ONE else _ZERO
-    return sp.Mul._from_args((factor, symbol), is_commutative=True)
+        return term if factor is _ONE else _ZERO
+    others = term.args if term.is_Mul else (term,)
+    return sp.Mul._from_args((factor, *others), is_commutative=True)
 
 
 @lru_cache(1 << 16)
@@ -79,11 +86,16 @@ def place(expr: Any) -> tuple[Any, ...]:
     return rank, "" if rank < len(_RANKS) else name, len(content), content
 
 
-def is_negative(form: Linear) -> bool:
-    """Whether SymPy takes a minus sign out: by most terms, else by the term whose name is first."""
+def is_negative(form: Linear) -> bool | None:
+    """Whether SymPy takes a minus sign out: by most terms, else by the symbol whose name is first.
+
+    None if it goes by more than names.
+    """
     signs = [f.p for f in form.factors.values()] + [form.number.p] * (form.number is not _ZERO)
     left = sum(1 if p > 0 else -1 for p in signs)
     if left or not form.factors:
         return left < 0
+    if not all(term.is_Symbol for term in form.factors):
+        return None
     first = min(form.factors, key=lambda symbol: symbol.name)
     return bool(form.factors[first].p < 0)

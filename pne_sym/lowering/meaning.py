@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import sympy as sp
@@ -125,8 +124,9 @@ class Meaning:
         """`lowered`, by the names that values have in the first function that has them."""
 
         def named(atom: Any) -> Any:
-            called = {s: self._called.get(s, s) for s in atom.free_symbols}
-            return atom.xreplace({s: -c if s in self._turned else c for s, c in called.items()})
+            called = {s: self._called.get(s, s) for s in algebra.symbols(atom)}
+            signs = {s: -c if s in self._turned else c for s, c in called.items()}
+            return algebra.replaced(atom, signs)
 
         return {
             name: (frame, tuple(named(sp.sympify(atom)) for atom in found))
@@ -161,7 +161,7 @@ class Meaning:
             equation = self._id.get(part.quantity, need) if part else need
             own = s.hint.removeprefix(f"{s.stage.leg_type}_") in OWN_NAMES
             hint = of.name if of else s.hint if own else ""
-            found.append(replace(s, equation=equation, hint=hint))
+            found.append(s._replace(equation=equation, hint=hint))
             self._note(needed, s.expr, equation)
         return self.sorted(found[::-1])
 

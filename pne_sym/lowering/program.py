@@ -10,6 +10,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Derivation, Output
+from pne_sym.lowering.algebra import replaced, symbols
 from pne_sym.lowering.builder import Atom, Builder, Guard, Statement
 from pne_sym.lowering.closures import closures, given_displacements
 from pne_sym.lowering.components import Lowering
@@ -131,6 +132,8 @@ def _cheapest_stores(
 ) -> tuple[_Stored, Lowering]:
     """Lower the outputs of a group with each choice of rotations; keep the cheaper."""
     outputs = [o for o in derivation.outputs if o.array in arrays]
+    if not outputs:
+        return {}, Lowering(derivation, builder)
 
     def run(*, columns: bool) -> tuple[int, tuple[_Stored, Lowering]]:
         builder.live = set()
@@ -163,7 +166,7 @@ def _settle_signs(builder: Builder, meaning: Meaning, slices: list[_Slice]) -> N
     signs = {symbol: -symbol for symbol in turned}
     for part in slices:
         part.stores = [
-            (at, replace(store, value=sp.sympify(store.value).xreplace(signs)))
+            (at, replace(store, value=replaced(sp.sympify(store.value), signs)))
             for at, store in part.stores
         ]
         if part.guards is not None:
@@ -270,7 +273,7 @@ class _Slice:
 
     def statements(self, builder: Builder) -> tuple[list[Statement], list[Any]]:
         """Needed statements in order, and the guards that concern them."""
-        wanted = {s for _, store in self.stores for s in sp.sympify(store.value).free_symbols}
+        wanted = {s for _, store in self.stores for s in symbols(sp.sympify(store.value))}
         needed = _closure(builder, wanted)
         equations = {
             s.equation
@@ -280,9 +283,9 @@ class _Slice:
         guards = self.guards or [
             g
             for g in builder.guards
-            if g.equation in equations and g.value.free_symbols <= needed | wanted
+            if g.equation in equations and symbols(g.value) <= needed | wanted
         ]
-        extra = {s for g in guards for s in g.scale.free_symbols}
+        extra = {s for g in guards for s in symbols(g.scale)}
         needed |= _closure(builder, extra) | extra
         return [s for s in builder.statements if s.target in needed], guards
 
@@ -296,7 +299,7 @@ def _closure(builder: Builder, wanted: set[Any]) -> set[Any]:
             continue
         needed.add(symbol)
         if symbol in builder.of:
-            stack.extend(builder.of[symbol].expr.free_symbols)
+            stack.extend(symbols(builder.of[symbol].expr))
     return needed
 
 
@@ -375,7 +378,7 @@ def _used(
     expressions = [s.expr for s in statements]
     expressions += [sp.sympify(store.value) for _, store in stores]
     expressions += [e for g in guards for e in (g.value, g.scale)]
-    return {symbol for e in expressions for symbol in e.free_symbols}
+    return {symbol for e in expressions for symbol in symbols(e)}
 
 
 def _function(
@@ -441,7 +444,7 @@ def _closure_of(assignments: list[Assignment], wanted: set[Any]) -> set[Any]:
         symbol = stack.pop()
         if symbol not in needed:
             needed.add(symbol)
-            stack.extend(made[symbol].free_symbols if symbol in made else ())
+            stack.extend(symbols(made[symbol]) if symbol in made else ())
     return needed
 
 

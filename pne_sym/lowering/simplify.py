@@ -10,6 +10,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.lowering.algebra import operations, replaced, symbols
+from pne_sym.lowering.algebra import symbol as as_symbol
 from pne_sym.lowering.builder import Statement
 from pne_sym.program.ir import Stage, Store
 
@@ -50,7 +51,7 @@ def inline_single_use(
         ):
             inlined[statement.target] = expr
             continue
-        kept.append(statement if expr is statement.expr else replace(statement, expr=expr))
+        kept.append(statement if expr is statement.expr else statement._replace(expr=expr))
     return _needed(kept, stores, guards)
 
 
@@ -90,7 +91,7 @@ def numbered(
             k += 1
         issued[of] = k
         taken.add(name)
-        names[statement.target] = sp.Symbol(name, real=True)
+        names[statement.target] = as_symbol(name)
     return names
 
 
@@ -106,7 +107,7 @@ def renamed(
         return replaced(sp.sympify(expr), names)
 
     return (
-        [replace(s, target=names.get(s.target, s.target), expr=again(s.expr)) for s in statements],
+        [s._replace(target=names.get(s.target, s.target), expr=again(s.expr)) for s in statements],
         [(stage, replace(store, value=again(store.value))) for stage, store in stores],
         [replace(g, value=again(g.value), scale=again(g.scale)) for g in guards],
     )

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from math import prod
+from typing import Any
 
 import sympy as sp
 
@@ -38,8 +40,8 @@ class Slices:
     def made(self) -> set[str]:
         """Names that the function gives values itself."""
         blocks = self.function.blocks
-        own = {str(a.target) for block in blocks for a in block.assignments}
-        return own | {str(a.target) for a in self.function.unpack} | set(self.sums)
+        own = {a.target.name for block in blocks for a in block.assignments}
+        return own | {a.target.name for a in self.function.unpack} | set(self.sums)
 
     @property
     def entries(self) -> set[str]:
@@ -64,7 +66,7 @@ def slices(function: Function) -> Slices:
     before = next(iter(blocks[:first]), None)
     legs = tuple(b for b in blocks if b.leg_type)
     after = next((b for b in blocks[first:] if not b.leg_type), None)
-    made = [str(a.target) for a in (*function.unpack, *(before.assignments if before else ()))]
+    made = [a.target.name for a in (*function.unpack, *(before.assignments if before else ()))]
     later = set[str]().union(*(symbols(b) for b in (*legs, after)))
     return Slices(
         function,
@@ -72,13 +74,21 @@ def slices(function: Function) -> Slices:
         legs,
         after,
         tuple(n for n in dict.fromkeys(made) if n in later),
-        tuple(dict.fromkeys(str(t) for b in legs for t, _ in b.sums)),
+        tuple(dict.fromkeys(t.name for b in legs for t, _ in b.sums)),
     )
+
+
+@lru_cache(1 << 16)
+def read_in(expr: Any) -> frozenset[str]:
+    """Names that an expression reads."""
+    if expr.is_Symbol:
+        return frozenset((expr.name,))
+    return frozenset[str]().union(*map(read_in, expr.args))
 
 
 def read_by(assignments: tuple[Assignment, ...]) -> set[str]:
     """Names on the right-hand sides of assignments."""
-    return {s.name for a in assignments for s in a.expr.free_symbols}
+    return set[str]().union(*(read_in(a.expr) for a in assignments))
 
 
 def symbols(block: Block | None) -> set[str]:
@@ -89,7 +99,7 @@ def symbols(block: Block | None) -> set[str]:
     expressions += [sp.sympify(s.value) for s in block.stores]
     expressions += [sp.sympify(v) for _, v in block.sums]
     expressions += [sp.sympify(e) for c in block.checks for e in (c.value, c.scale)]
-    return {symbol.name for e in expressions for symbol in e.free_symbols}
+    return set[str]().union(*map(read_in, expressions))
 
 
 def columns(shape: tuple[int, ...]) -> int:

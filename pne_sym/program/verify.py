@@ -8,6 +8,7 @@ expressions are made of a closed set of nodes, so that no power function is ever
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
@@ -77,21 +78,21 @@ class _Scope:
 
     def introduce(self, symbol: Any, leg_type: str) -> None:
         name = getattr(symbol, "name", "")
-        self.require(symbol == sp.Symbol(name, real=True), symbol, " is not a real symbol")
+        real = isinstance(symbol, sp.Symbol) and _nodes(symbol)[1] == ((name, True),)
+        self.require(real, symbol, " is not a real symbol")
         self.require(name not in self.known, name, " is assigned twice")
         self.known[name] = leg_type
 
     def use(self, expressions: Iterable[Any], leg_type: str, *what: object) -> None:
         """Require known nodes, and symbols that are defined before."""
-        for node in (n for e in expressions for n in sp.preorder_traversal(sp.sympify(e))):
-            self.require(_is_allowed(node), *what, ": ", node, " is outside the closed set")
-            if node.is_Symbol:
-                vector, line, number = node.name.rpartition("_")
+        for strange, symbols in map(_nodes, map(sp.sympify, expressions)):
+            self.require(not strange, *what, ": ", *strange[:1], " is outside the closed set")
+            for name, is_real in symbols:
+                vector, line, number = name.rpartition("_")
                 entry = vector + line in self.entries and number.isdigit()
-                defined = entry or self.known.get(node.name) in ("", leg_type)
-                self.require(defined, *what, ": ", node, " is not defined before")
-                same = node == sp.Symbol(node.name, real=True)
-                self.require(same, *what, ": ", node, " is not real")
+                defined = entry or self.known.get(name) in ("", leg_type)
+                self.require(defined, *what, ": ", name, " is not defined before")
+                self.require(is_real, *what, ": ", name, " is not real")
 
     def assign(self, target: Any, expr: Any, leg_type: str, equation: str) -> None:
         self.require(bool(equation), target, " = ", expr, ": no equation id")
@@ -143,6 +144,17 @@ class _Scope:
             self.require(inside, f"{where} is outside the shape {shape}")
             self.require((store.array, *place) not in self.written, f"{where} is written twice")
             self.written.add((store.array, *place))
+
+
+@lru_cache(1 << 16)  # functions share statements
+def _nodes(expr: Any) -> tuple[tuple[Any, ...], tuple[tuple[str, bool], ...]]:
+    """Nodes outside the closed set; names of the symbols, and whether they are real ones."""
+    nodes = dict.fromkeys(sp.preorder_traversal(expr))
+    symbols = [n for n in nodes if n.is_Symbol]
+    return (
+        tuple(n for n in nodes if not _is_allowed(n)),
+        tuple((n.name, n == sp.Symbol(n.name, real=True)) for n in symbols),
+    )
 
 
 def _is_allowed(node: Any) -> bool:

@@ -21,7 +21,7 @@ def _same(found: Any, expected: Any) -> bool:
     ) == hash(expected)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_they_are_those_of_sympy(seed: int) -> None:
     draw = random.Random(seed)
     for _ in range(60):
@@ -41,7 +41,7 @@ def test_they_are_those_of_sympy(seed: int) -> None:
         assert _same(algebra.product(other, terms[0]), other * terms[0])
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_replaced_is_what_sympy_replaces(seed: int) -> None:
     draw = random.Random(seed)
     made: list[Any] = [*SYMBOLS, *(f * s for f in FACTORS[-6:] for s in SYMBOLS[:3])]
