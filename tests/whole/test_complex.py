@@ -23,7 +23,7 @@ from tests.whole.test_bounds import limited
 
 @cache
 def moving() -> Manipulator:
-    """All arguments but q0, which test_arguments.py has: limits of effort, redundant actuators, a base that moves."""
+    """All arguments but q0 (test_arguments.py has it): bounds, redundancy, a base that moves."""
     return checked(replace(limited("planar_4rpr", 2, 5e3), moving_base=True))
 
 
