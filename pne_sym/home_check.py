@@ -48,6 +48,7 @@ _FUNCTIONS = {  # of the program, by what is public of them
     "dissipation": "dissipation",
     "motors": "motor_rates",
     "joint_margins": "joint_margins",
+    "effort_limits": "reachable_wrench",
 }
 
 

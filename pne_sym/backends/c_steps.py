@@ -63,6 +63,14 @@ _SINGLE = {
     "resolve": "resolve({m}, {n}, {first}, {a}, {x}, {y}, why.singular);",
     "null_basis": "null_basis({m}, {n}, {first}, {a}, {x});",
     "singular_values": "singular_values({m}, {n}, {a}, {x});",
+    "least_entry": "least_entry({m}, {a}, {x});",
+    "spread": "spread({first}, {a}, {x}, {y});",
+    "factors_within": "factors_within({m}, {a}, {b}, {c}, {x}, {y}, why.unreachable, "
+    "why.overflow);",
+    "factors_of_some": "factors_of_some({m}, {a}, {b}, {c}, {d}, {x}, {y}, why.unreachable, "
+    "why.overflow);",
+    "nearest_within": "nearest_within({m}, {a}, {b}, {c}, {d}, {x}, why.unreachable, "
+    "why.overflow);",
     "rotation_of_quaternion": "rotation_of_quaternion({a}, {x});",
     "quaternion_of_rotation": "quaternion_of_rotation({a}, {x});",
     "angle_of_rotation": "angle_of_rotation({a}, {x});",
@@ -74,6 +82,7 @@ _SINGLE = {
 }
 """Calls for one state."""
 _BIG = ("least_norm", "resolve", "null_basis", "singular_values")
+_BOUNDED = ("nearest_within", "factors_of_some")
 _PARTS = ("same", "entry", "split", "take", "extend")
 """Operations whose results may be parts of the operand."""
 OPERATIONS = frozenset((*_ENTRIES, *_LANES, *_SINGLE, *_PARTS, "search"))
@@ -105,6 +114,8 @@ def biggest(bundle: Bundle) -> int:
     shapes = [program.shapes[f"gap_{c.leg_type}"][1:] for c in program.closures]
     shapes += [s.operands[0].shape for s in steps if isinstance(s, Apply) and s.operation in _BIG]
     shapes += [f.outputs[0].value.shape for f in program.public if not f.is_exported]
+    bounded = [s for s in steps if isinstance(s, Apply) and s.operation in _BOUNDED]
+    shapes += [(s.operands[0].size + 1,) for s in bounded]  # a factor beside the forces
     return max(n for shape in shapes for n in shape)
 
 
@@ -412,7 +423,7 @@ class Steps:
         both = f"{m} + {p}" if not (m + p).isdigit() else str(int(m) + int(p))
         first = (*step.numbers, 0)[0]
         return {
-            **dict(zip("abc", (self.at[o.name] for o in step.operands), strict=False)),
+            **dict(zip("abcd", (self.at[o.name] for o in step.operands), strict=False)),
             **dict(zip("xy", targets, strict=False)),
             **{
                 f"all_{c}": self._by(self._size(o))

@@ -11,7 +11,12 @@ import numpy as np
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.numpy_functions import FunctionText, Places
-from pne_sym.backends.numpy_public import OPERATIONS, public_text, steps_text
+from pne_sym.backends.numpy_public import (
+    OPERATIONS,
+    judged_functions,
+    public_text,
+    steps_text,
+)
 from pne_sym.backends.numpy_support import needed
 from pne_sym.backends.python_public import ParametersView, exported, parameters_view
 from pne_sym.backends.python_text import PythonText
@@ -19,7 +24,7 @@ from pne_sym.backends.templating import FIXED, render
 from pne_sym.program.ir import Closure
 from pne_sym.program.slices import symbols
 
-_SUPPORT = ("modes", "recording", "operations", "linear", "iteration", "rotations")
+_SUPPORT = ("modes", "recording", "operations", "linear", "bounds", "iteration", "rotations")
 """Templates of plain Python, of which a module gets what it needs."""
 
 
@@ -95,7 +100,7 @@ def support() -> str:
 def _functions(bundle: Bundle, places: Places) -> tuple[FunctionText, ...]:
     """Functions of the program that steps and iterations run."""
     program = bundle.program
-    judged = {n for f in program.public if f.gives_status for n in f.functions}
+    judged = judged_functions(program)
     run = {n for f in program.public for n in f.functions}
     run |= {closure.function for closure in program.closures}
     return tuple(

@@ -46,6 +46,11 @@ _EXPRESSIONS = {
     "resolve": "_resolve({0}, {n})",
     "null_basis": "_null_basis({0}, {n})",
     "singular_values": "_singular_values({0})",
+    "least_entry": "_least_entry({0})",
+    "spread": "_spread({0}, {n})",
+    "factors_within": "_factors_within({0}, {1}, {2})",
+    "factors_of_some": "_factors_of_some({0}, {1}, {2}, {3})",
+    "nearest_within": "_nearest_within({0}, {1}, {2}, {3})",
     "rotation_of_quaternion": "_rotation_of_quaternion({0})",
     "quaternion_of_rotation": "_quaternion_of_rotation({0})",
     "angle_of_rotation": "_angle_of_rotation({0})",
@@ -61,7 +66,8 @@ OPERATIONS = frozenset((*_EXPRESSIONS, "search"))
 
 def steps_text(program: Program, function: PublicFunction) -> str:
     """The steps as a function of a mode and all inputs, states last, which returns a tuple."""
-    lines = [line for step in function.steps for line in _step(program, step)]
+    judged = set() if function.gives_status else judged_functions(program)
+    lines = [line for step in function.steps for line in _step(program, step, judged)]
     runs = [
         isinstance(s, Run) and "q" in program.functions[s.function].inputs for s in function.steps
     ]
@@ -72,13 +78,20 @@ def steps_text(program: Program, function: PublicFunction) -> str:
     return "\n".join((head, textwrap.indent("\n".join([*lines, f"return ({outputs},)"]), "    ")))
 
 
-def _step(program: Program, step: Step) -> list[str]:
+def judged_functions(program: Program) -> set[str]:
+    """Functions of the program that tell why a state is impossible."""
+    return {n for f in program.public if f.gives_status for n in f.functions}
+
+
+def _step(program: Program, step: Step, judged: set[str]) -> list[str]:
     if isinstance(step, Run):
         names = [target.name for target in step.targets]
         function = program.functions[step.function]
         arrays = ", ".join(f'"{array}"' for array in function.arrays)
         arrays = f"({arrays}{',' * (len(function.arrays) == 1)})"
-        given = ", ".join((f"_run_{step.function}", arrays, *function.inputs))
+        run = f"_run_{step.function}"
+        run = f"_in_one({run})" if step.function in judged else run
+        given = ", ".join((run, arrays, *function.inputs))
         return unpacked(names, f"m.run({given})", WIDTH - 4)
     if isinstance(step, Apply):
         return _wrapped(f"{', '.join(target.name for target in step.targets)} = {applied(step)}")

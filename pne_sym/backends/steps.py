@@ -25,7 +25,9 @@ class StepText:
         apply: {targets} get the {value}.
         several: more than one of them.
         made: behind that for each {target}, with its status {code} where it is not finite.
+        known: what is finite where an {target} is a number or infinite.
         run: {each}, the results with commas behind them, of a {function} at {inputs}.
+        alone: stands for inputs where there are none.
         search: {target} from {start}, of a {residual} and its {slope}, which take {given} and
             {guess} behind the pose, with commas before them; with {halving} of steps or without.
         closing: finds the displacements q.
@@ -37,7 +39,9 @@ class StepText:
     apply: str
     several = "{}"
     made = ""
+    known = "{}"
     run: str
+    alone = ""
     search: str
     closing: str
     first = 0
@@ -64,7 +68,7 @@ class StepText:
     def _step(self, step: Step) -> list[str]:
         if isinstance(step, Run):
             each = "".join(f"{target.name}, " for target in step.targets)
-            inputs = ", ".join(self.program.functions[step.function].inputs)
+            inputs = ", ".join(self.program.functions[step.function].inputs) or self.alone
             return [self.run.format(each=each.rstrip(), function=step.function, inputs=inputs)]
         if isinstance(step, Search):
             text = self.search.format(
@@ -80,8 +84,10 @@ class StepText:
         targets = ", ".join(target.name for target in step.targets)
         targets = targets if len(step.targets) == 1 else self.several.format(targets)
         lines = [self.apply.format(targets=targets, value=self._applied(step))]
-        code = int(OPERATIONS[step.operation].status)
-        made = (self.made.format(target=target.name, code=code) for target in step.targets)
+        operation = OPERATIONS[step.operation]
+        code, known = int(operation.status), self.known if operation.unbounded else "{}"
+        names = (known.format(target.name) for target in step.targets)
+        made = (self.made.format(target=name, code=code) for name in names)
         return lines + [line for line in made if line and code]
 
     def _applied(self, step: Apply) -> str:

@@ -13,7 +13,7 @@ import jinja2
 from pne_sym.model.body import RELATIVE
 from pne_sym.model.coupling import LEAST
 from pne_sym.model.values import LARGEST, ROUNDING, SNAP
-from pne_sym.program import interpret, iteration, linear, operations
+from pne_sym.program import distribution, interpret, iteration, linear, operations
 
 LIMITS = {
     "largest": f"{LARGEST:g}",
@@ -27,6 +27,7 @@ FIXED = {
     "pivot": linear.PIVOT,
     "orthonormal": operations.ORTHONORMAL,
     "tiny": operations.TINY,
+    "turns": distribution.TURNS,
     "steps": iteration.STEPS,
     "longest": iteration.LONGEST,
     "steady": iteration.STEADY,

@@ -338,6 +338,7 @@ class Coordinates:
         transmits_moments: some leg transmits a moment: leg reactions have six entries.
         names: of every entry of q, the leg's and the joint's: leg2_joint3 where they have none.
         limited: (leg, joint) of the entries of q that have limits.
+        bounded: (leg, joint) of the entries of tau that have limits.
         overconstrained: how many constraints follow from the others.
     """
 
@@ -358,6 +359,7 @@ class Coordinates:
     constraint_units: tuple[str, ...] = ()
     names: tuple[str, ...] = ()
     limited: tuple[tuple[int, int], ...] = ()
+    bounded: tuple[tuple[int, int], ...] = ()
     overconstrained: int = 0
 
     @property

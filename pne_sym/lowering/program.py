@@ -59,6 +59,7 @@ GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
     (("dissipation", ("dissipation",)),),
     (("motors", ("motor_rates", "per_turn", "actuated_rates", "ratios", "coupling")),),
     (("joint_margins", ("margins",)),),
+    (("effort_limits", ("effort_limits",)),),
     (("condition", ("lengths",)),),
 )
 
@@ -479,6 +480,7 @@ def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
         **{name: (n["NU"],) for name in _OF_MOTORS if _is_made(derivation, name)},
         **({"coupling": (n["NU"], n["NU"])} if _is_made(derivation, "coupling") else {}),
         **({"margins": (n["NJ"],)} if _is_made(derivation, "margins") else {}),
+        **({"effort_limits": (n["NU"],)} if _is_made(derivation, "effort_limits") else {}),
         "constraints": (n["NC"],),
         "constraint_bias": (n["NC"],),
         "lengths": (2,),

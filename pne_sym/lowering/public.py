@@ -5,11 +5,15 @@ Reference: inverse dynamics Eq. 3, equations of motion Eqs. 5 to 7, constraints 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from pne_sym.derivation import Coordinates, Derivation
 from pne_sym.lowering.public_actuators import actuator_functions
+from pne_sym.lowering.public_bounds import bounded_functions
 from pne_sym.lowering.public_condition import (
     CONDITION,
     CONDITION_CONSTRAINED,
+    conditioning_functions,
     moment_rows,
     scaled_values,
 )
@@ -31,7 +35,8 @@ from pne_sym.program.public import (
 _SIZES = {
     "X": "NQ", "X0": "NQ", "V": "NV", "A": "NV", "tau": "NU", "q": "NJ", "q0": "NJ",
     "q_actuated": "NU", "wrench": "NW", "weights": "NU", "Z": "NV", "length": "",
-    "base": "18",
+    "base": "18", "direction": "NV", "wrench_direction": "NW", "tau_min": "NU", "tau_max": "NU",
+    "reference": "NU",
 }  # fmt: skip
 _MEANINGS = {
     "X": "pose, and extra coordinates",
@@ -47,6 +52,11 @@ _MEANINGS = {
     "base": "motion of the base (R, omega, alpha, a): rotation world_R_base; in base axes its "
     "angular velocity and acceleration, and the acceleration of its origin, without gravity",
     "q0": "first guess of the displacements",
+    "direction": "direction of accelerations, of any length",
+    "wrench_direction": "direction of external wrenches on the platform, of any length",
+    "tau_min": "least actuator forces [N or N m]",
+    "tau_max": "largest actuator forces [N or N m]",
+    "reference": "actuator forces to be near to [N or N m]",
 }
 _DEFAULTS = {
     "length": Default.ZEROS,
@@ -54,6 +64,7 @@ _DEFAULTS = {
     "weights": Default.ONES,
     "q0": Default.HOME_Q,
     "base": Default.REST,
+    "reference": Default.ZEROS,
 }
 
 
@@ -72,6 +83,8 @@ def public_functions(derivation: Derivation, program: Program) -> tuple[PublicFu
         *writer.of_program(),
         *writer.of_dynamics(),
         *writer.of_condition(rows),
+        *conditioning_functions(writer, rows),
+        *bounded_functions(writer),
         *writer.of_kinematics(),
         *actuator_functions(writer),
         *pose_functions(coordinates),
@@ -93,6 +106,10 @@ class Writer:
         self.constrained = self.n["NC"] > 0
         self.every = tuple(range(self.n["NV"]))
         self.independent = self.n["NC"] - coordinates.overconstrained
+        facts = coordinates.actuation
+        self.redundancy = (
+            self.n["NU"] - (facts.rank - self.independent) if facts.is_determined else 0
+        )
 
     # ---- arguments ---------------------------------------------------------------------------
 
@@ -185,38 +202,36 @@ class Writer:
         ]
         return [*found, self._null_space()] if self.n["NU"] else found
 
-    def _external(self, a: Algorithm) -> Value:
+    def external(self, a: Algorithm) -> Value:
+        """The external wrench as a generalised force."""
         return a.apply("extend", self.given("wrench").value, numbers=[self.n["NV"]])
 
-    def _forces(
-        self, a: Algorithm, required: Value, actuators: list[Value], *, weighted: bool = False
+    def forces(
+        self,
+        a: Algorithm,
+        required: Value,
+        actuators: list[Value],
+        *,
+        weighted: bool = False,
+        choose: Callable[[Value, Value], Value] | None = None,
     ) -> tuple[Value, ...]:
-        """tau, and lambda where there are constraints, with H tau + Hk lambda = required."""
+        """tau, and lambda where there are constraints, with H tau + Hk lambda = required.
+
+        Where actuators are redundant, tau is of least norm, or what `choose` makes of that and the
+        matrix that takes all tau with the same effect to the same vector.
+        """
         facts = self.c.actuation
-        H, Hk = actuators[0], actuators[1] if self.constrained else None
         if not facts.is_determined:
-            none = a.apply("impossible", required, numbers=[self.n["NU"]])
-            return (
-                (none,)
-                if Hk is None
-                else (none, a.apply("impossible", required, numbers=[self.n["NC"]]))
-            )
-        f = required
-        if facts.surplus:
-            H, Hk, f = self._attainable(a, H, Hk, f)
-        elif facts.solved != self.every:
-            H, f = (a.apply("take", v, numbers=facts.solved) for v in (H, f))
-            Hk = a.apply("take", Hk, numbers=facts.solved) if Hk else None
-        square = self.n["NU"] + self.n["NC"] == H.shape[0] and not self.c.overconstrained
-        if square:
-            if Hk is None:
-                return (a.apply("solve", H, f),)
-            both = a.apply("solve", a.apply("beside", H, Hk), f)
-            return a.apply_all("split", both, numbers=[self.n["NU"]])
+            sizes = ("NU", "NC") if self.constrained else ("NU",)
+            return tuple(a.apply("impossible", required, numbers=[self.n[k]]) for k in sizes)
+        H, Hk, f = self._solved(a, required, actuators)
+        if self._is_square(H):
+            return self._unique(a, H, Hk, f)
         left = across = None
         if Hk is not None:
             left, across = a.apply_all("resolve", Hk, numbers=[self.independent])
-        tau = self._least(a, H, f, across, weighted=weighted)
+        tau, matrix = self._least(a, H, f, across, weighted=weighted)
+        tau = choose(tau, matrix) if choose else tau
         if Hk is None or left is None:
             return (tau,)
         rest = a.apply("subtract", f, a.apply("times", H, tau))
@@ -224,16 +239,49 @@ class Writer:
         how = "least_norm" if self.c.overconstrained else "solve"
         return tau, a.apply(how, system, a.apply("times", left, rest))
 
+    def shared_forces(
+        self, a: Algorithm, required: Value, actuators: list[Value]
+    ) -> tuple[Value, Value]:
+        """tau of least norm, and the matrix that takes all tau with its effect to one vector."""
+        H, Hk, f = self._solved(a, required, actuators)
+        if self._is_square(H):
+            return self._unique(a, H, Hk, f)[0], H
+        across = a.apply_all("resolve", Hk, numbers=[self.independent])[1] if Hk else None
+        return self._least(a, H, f, across, weighted=False)
+
+    def _solved(
+        self, a: Algorithm, f: Value, actuators: list[Value]
+    ) -> tuple[Value, Value | None, Value]:
+        """H, Hk and the required force in the rows from which forces are found."""
+        facts = self.c.actuation
+        H, Hk = actuators[0], actuators[1] if self.constrained else None
+        if facts.surplus:
+            return self._attainable(a, H, Hk, f)
+        if facts.solved != self.every:
+            H, f = (a.apply("take", v, numbers=facts.solved) for v in (H, f))
+            Hk = a.apply("take", Hk, numbers=facts.solved) if Hk else None
+        return H, Hk, f
+
+    def _is_square(self, H: Value) -> bool:
+        """Whether forces are unique."""
+        return self.n["NU"] + self.n["NC"] == H.shape[0] and not self.c.overconstrained
+
+    def _unique(self, a: Algorithm, H: Value, Hk: Value | None, f: Value) -> tuple[Value, ...]:
+        if Hk is None:
+            return (a.apply("solve", H, f),)
+        both = a.apply("solve", a.apply("beside", H, Hk), f)
+        return a.apply_all("split", both, numbers=[self.n["NU"]])
+
     def _least(
         self, a: Algorithm, H: Value, f: Value, across: Value | None, *, weighted: bool
-    ) -> Value:
-        """tau of least (weighted) norm, on rows that constraint forces do not act on."""
+    ) -> tuple[Value, Value]:
+        """tau of least (weighted) norm, on rows that constraints do not act on; its matrix."""
         scale = a.apply("inverse_root", self.given("weights").value) if weighted else None
         matrix = a.apply("scale_columns", H, scale) if scale else H
         if across:
             matrix, f = a.apply("product", across, matrix), a.apply("times", across, f)
         least = a.apply("least_norm", matrix, f)
-        return a.apply("multiply", scale, least) if scale else least
+        return a.apply("multiply", scale, least) if scale else least, matrix
 
     def _attainable(
         self, a: Algorithm, H: Value, Hk: Value | None, f: Value
@@ -253,8 +301,8 @@ class Writer:
         a = Algorithm()
         names = ["required", "H", *(["Hk"] if self.constrained else [])]
         required, *actuators = a.run("required", self.program, *names)
-        needed = a.apply("subtract", required, self._external(a))
-        outputs = self._force_outputs(*self._forces(a, needed, actuators, weighted=True))
+        needed = a.apply("subtract", required, self.external(a))
+        outputs = self.force_outputs(*self.forces(a, needed, actuators, weighted=True))
         return self.function(
             "inverse_dynamics",
             "Actuator forces tau for the acceleration A, by Eq. 3.",
@@ -265,7 +313,8 @@ class Writer:
             also="the solution of the linear equations",
         )
 
-    def _force_outputs(self, tau: Value, *rest: Value) -> list[Argument]:
+    def force_outputs(self, tau: Value, *rest: Value) -> list[Argument]:
+        """The outputs tau and lambda."""
         found = [self.made(tau, "tau", "actuator forces [N or N m]", "NU")]
         return found + [self._multipliers(v) for v in rest]
 
@@ -296,7 +345,7 @@ class Writer:
         names = ["M", "Z", "H", *(["Hk", "constraint_bias"] if self.constrained else [])]
         M, Z, H, *constraint = a.run("dynamics", self.program, *names)
         force = a.apply("times", H, self.given("tau").value)
-        force = a.apply("subtract", a.apply("add", force, self._external(a)), Z)
+        force = a.apply("subtract", a.apply("add", force, self.external(a)), Z)
         if constraint and self.c.overconstrained:
             A, lam = self._least_held(a, M, force, *constraint)
             outputs = [self._multipliers(lam)]
@@ -343,7 +392,7 @@ class Writer:
         names = ["M", "Z", "H", *(["Hk"] if self.constrained else [])]
         M, Z, *actuators = a.run("dynamics", self.program, *names)
         needed = a.apply("add", a.apply("times", M, known), Z)
-        needed = a.apply("subtract", needed, self._external(a))
+        needed = a.apply("subtract", needed, self.external(a))
         columns = a.apply("take_columns", M, numbers=facts.passive)
         own = a.apply("take", columns, numbers=facts.passive)
         if facts.is_coupled:
@@ -366,8 +415,8 @@ class Writer:
         given = self.program.functions["required"].arrays
         values = dict(zip(given, a.run("required", self.program, *given), strict=True))
         actuators = [values[name] for name in ("H", "Hk") if name in values]
-        needed = a.apply("subtract", values["required"], self._external(a))
-        tau, *lam = self._forces(a, needed, actuators)
+        needed = a.apply("subtract", values["required"], self.external(a))
+        tau, *lam = self.forces(a, needed, actuators)
         efforts = [a.without_rotors(tau, values), *lam]
         arrays = self.program.functions["legs"].arrays
         shape = self.program.shapes["leg_force"]

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from pne_sym.derivation import Coordinates, Derivation, Role
 from pne_sym.program.algorithm import Algorithm
-from pne_sym.program.public import Value
+from pne_sym.program.public import PublicFunction, Value
+
+if TYPE_CHECKING:
+    from pne_sym.lowering.public import Writer
 
 CONDITION = (
     "How far a pose is from singularities: singular values of H, rows of moments divided by a "
@@ -29,12 +34,78 @@ def moment_rows(derivation: Derivation, c: Coordinates) -> tuple[int, ...]:
 
 
 def scaled_values(
-    a: Algorithm, matrices: list[Value], lengths: Value, length: Value, rows: tuple[int, ...]
+    a: Algorithm,
+    matrices: list[Value],
+    lengths: Value,
+    length: Value | None,
+    rows: tuple[int, ...],
 ) -> Value:
     """Singular values of matrices side by side, rows of moments divided by the length."""
     matrix = matrices[0] if len(matrices) == 1 else a.apply("beside", *matrices)
-    if rows:
-        matrix = a.apply(
-            "divide_rows", matrix, a.apply("choose_length", lengths, length), numbers=rows
-        )
-    return a.apply("singular_values", matrix)
+    return a.apply("singular_values", _scaled(a, matrix, lengths, length, rows))
+
+
+def _scaled(
+    a: Algorithm, matrix: Value, lengths: Value, length: Value | None, rows: tuple[int, ...]
+) -> Value:
+    """Rows of moments divided by the length, the model's own where none is given."""
+    if not rows:
+        return matrix
+    if length is None:
+        first = a.apply("entry", lengths, numbers=[0])
+        length = a.apply("subtract", first, first)
+    chosen = a.apply("choose_length", lengths, length)
+    return a.apply("divide_rows", matrix, chosen, numbers=rows)
+
+
+def conditioning_functions(w: Writer, rows: tuple[int, ...]) -> list[PublicFunction]:
+    """Numbers of what `condition` tells."""
+    return [*([_manipulability(w, rows)] if w.n["NU"] else []), _singularity_distance(w, rows)]
+
+
+def _manipulability(w: Writer, rows: tuple[int, ...]) -> PublicFunction:
+    a = Algorithm()
+    arrays = ["lengths", "H", *(["Hk"] if w.constrained else [])]
+    lengths, H, *constraints = a.run("condition", w.program, *arrays)
+    H = _scaled(a, H, lengths, None, rows)
+    if constraints:  # on the motions that are left
+        held = a.apply("transposed", _scaled(a, constraints[0], lengths, None, rows))
+        basis = a.apply("null_basis", held, numbers=[w.independent])
+        H = a.apply("product", a.apply("transposed", basis), H)
+    sigma = a.apply("singular_values", H)
+    effective = w.c.actuation.rank - w.independent if constraints else w.c.actuation.force_rank
+    volume, isotropy = a.apply_all("spread", sigma, numbers=[min(effective, *H.shape)])
+    return w.function(
+        "manipulability",
+        "Manipulability of forces: the product of the singular values that `condition` has by "
+        "default, and the least over the largest of them.",
+        "X",
+        a,
+        w.made(volume, "measure", "product of the singular values"),
+        w.made(isotropy, "isotropy", "least over largest value, 1 where H is isotropic"),
+        counted="condition",
+        also="the singular values",
+    )
+
+
+def _singularity_distance(w: Writer, rows: tuple[int, ...]) -> PublicFunction:
+    a = Algorithm()
+    arrays = ["lengths", "pivots", "H", *(["Hk"] if w.constrained else [])]
+    lengths, legs, *found = a.run("condition", w.program, *arrays)
+    sigma = scaled_values(a, found, lengths, None, rows)
+    rank = min(w.c.actuation.rank if w.constrained else w.c.actuation.force_rank, sigma.size)
+    _, distance = a.apply_all("spread", sigma, numbers=[rank])
+    return w.function(
+        "singularity_distance",
+        "How near actuators and legs are to being singular: relative distances, 0 where they are.",
+        "X",
+        a,
+        w.made(
+            distance,
+            "actuators",
+            f"of {'[H Hk]' if w.constrained else 'H'} from matrices of lower rank, over its norm",
+        ),
+        w.made(a.apply("least_entry", legs), "legs", "least pivot of all legs"),
+        counted="condition",
+        also="the singular values",
+    )

@@ -22,8 +22,35 @@ def with_notes(function: PublicFunction, c: Coordinates, *, guessed: bool) -> Pu
         ],
         "project": ["By Gauss-Newton; impossible where none is found."],
         "rotation": _rotation(c),
+        "manipulability": _manipulability(c),
+        "reachable_wrench": _REACHABLE,
+        "reachable_acceleration": _REACHABLE,
+        "force_distribution": _DISTRIBUTION,
     }
     return replace(function, notes=tuple(notes.get(function.name, ())))
+
+
+_REACHABLE = (
+    (
+        "All s from least to largest, which is infinite where nothing limits it: forces are those "
+        "of `inverse_dynamics`, redundant actuators sharing them as is best; actuators without "
+        "limits of effort give any."
+    ),
+    "Impossible (UNREACHABLE) where there is no such s.",
+)
+_DISTRIBUTION = (
+    "By the dual active-set method of Goldfarb and Idnani; continuous along a motion.",
+    (
+        "Impossible (UNREACHABLE) where no forces within the bounds give the acceleration. Cables "
+        "pull with negative forces: tau_max = -t keeps tensions of t at least."
+    ),
+)
+
+
+def _manipulability(c: Coordinates) -> list[str]:
+    if not c.sizes["NC"]:
+        return []
+    return ["Of N^T H, N an orthonormal basis of the motions that constraints leave."]
 
 
 def _branch(*, guessed: bool) -> str:

@@ -26,7 +26,7 @@ from pne_sym.mechanics.conditioning import write_lengths
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
 from pne_sym.mechanics.joint_forces import write_joint_forces
-from pne_sym.mechanics.joint_limits import write_margins
+from pne_sym.mechanics.joint_limits import write_efforts, write_margins
 from pne_sym.mechanics.leg_chain import LegChain
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter
 from pne_sym.mechanics.leg_geometry import LegGeometry, build_geometry
@@ -91,6 +91,7 @@ def _derive(book: Book, manipulator: Manipulator) -> Derivation:
     write_motors(book, manipulator, legs)
     for leg in legs:
         write_margins(book, leg.g, leg.motion.chain.q, _starts(manipulator))
+        write_efforts(book, leg.g, _actuators(manipulator))
     write_lengths(book, [leg.g for leg in legs])
     book.coordinates = _coordinates(manipulator, space, legs)
     equal = (pair for leg in legs for pair in leg.g.same_axes())
@@ -122,6 +123,7 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         extras=tuple((i, j) for i, j, joint in joints if joint.extra),
         constraints=tuple(index for index, *_ in constraints),
         limited=tuple((i, j) for i, j, joint in joints if joint.has_stroke),
+        bounded=tuple((i, j) for i, j, joint in joints if joint.has_effort),
         turning=tuple(joint.kind.is_hinge for *_, joint in joints),
         home=(tuple(manipulator.home.X), tuple(manipulator.home.q)),
         actuation=actuation(manipulator),
@@ -357,6 +359,12 @@ def _closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None
         for k, j in enumerate(joints):
             if g.turns(j):
                 put(f"jacobian_{name}", Dot(g.spin(j), n), ((0, i * width + k),))
+
+
+def _actuators(manipulator: Manipulator) -> list[tuple[int, int]]:
+    """(leg, joint) of every entry of tau, counted from 0."""
+    legs = enumerate(manipulator.legs)
+    return [(i, j) for i, leg in legs for j, joint in enumerate(leg.joints) if joint.actuated]
 
 
 def _dissipation(book: Book, legs: list[Leg]) -> None:

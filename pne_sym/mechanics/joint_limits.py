@@ -1,4 +1,4 @@
-"""How far the joints of a leg are from their limits of displacement.
+"""How far the joints of a leg are from their limits of displacement; limits of actuator forces.
 
 Of a hinge that is no extra coordinate a full turn changes nothing: the displacement counts that is
 nearest to the middle of the range.
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Book, Output, ParameterField, Quantity
+from pne_sym.derivation import Book, Output, ParameterField, Quantity, Rule
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.manipulator import Leg
@@ -67,27 +67,51 @@ def write_margins(book: Book, g: LegGeometry, q: Mapping[int, Any], starts: Sequ
 
 def _limits(book: Book, g: LegGeometry, j: int) -> tuple[Any, ...]:
     """The live parameters of joint j: its least and its largest displacement."""
-    legs = g.leg_type
-
-    def pick(leg: Leg) -> tuple[float, float]:
-        limits = leg.joints[j - 1].limits
-        assert limits is not None
-        assert limits.displacement is not None
-        return limits.displacement
-
-    unit = g.kind(j).unit
-    symbols = book.parameters.add(
-        ParameterField(
-            f"{legs.name}_{legs.part('joint', j)}_limits",
-            legs.name,
-            (2,),
-            unit,
-            f"least and largest displacement of joint {j}",
-            tuple(f"legs[{i}].joints[{j - 1}].limits.displacement" for i in legs.indices),
-            np.asarray(legs.over_legs(pick)),
-        )
-    )
+    meaning = f"least and largest displacement of joint {j}"
+    symbols = _parameter(book, g, j, ("displacement", "limits", g.kind(j).unit, meaning))
     for symbol, mark, word in zip(symbols, "-+", ("least", "largest"), strict=True):
         latex, meaning = f"q^{mark}_{{{j}}}", f"{word} displacement of joint {j}"
         book.note_quantity(Quantity(str(symbol), latex, meaning, parameter=True))
     return symbols
+
+
+def _parameter(
+    book: Book, g: LegGeometry, j: int, of: tuple[str, str, str, str]
+) -> tuple[Any, ...]:
+    """A limit of joint j as a live parameter; of: its field, its name's end, unit, meaning."""
+    legs, (field, end, unit, meaning) = g.leg_type, of
+
+    def pick(leg: Leg) -> Any:
+        return getattr(leg.joints[j - 1].limits, field)
+
+    default = np.asarray(legs.over_legs(pick), dtype=float)
+    return book.parameters.add(
+        ParameterField(
+            f"{legs.name}_{legs.part('joint', j)}_{end}",
+            legs.name,
+            default.shape[1:],
+            unit,
+            meaning,
+            tuple(f"legs[{i}].joints[{j - 1}].limits.{field}" for i in legs.indices),
+            default,
+            rule=Rule.FREE if default.shape[1:] else Rule.POSITIVE,
+        )
+    )
+
+
+def write_efforts(book: Book, g: LegGeometry, actuators: Sequence[tuple[int, int]]) -> None:
+    """Limits of the forces of a leg's actuators, as parameters that functions look at.
+
+    Args:
+        book: of the derivation.
+        g: of the leg.
+        actuators: (leg, joint) of every entry of tau, counted from 0.
+    """
+    for j, joint in enumerate(g.leg_type.model.joints, 1):
+        if not joint.has_effort:
+            continue
+        meaning = f"largest size of the force of actuator {j}"
+        (limit,) = _parameter(book, g, j, ("effort", "effort", g.kind(j).effort_unit, meaning))
+        book.note_quantity(Quantity(str(limit), rf"\bar\tau_{{{j}}}", meaning, parameter=True))
+        rows = tuple(actuators.index((i, j - 1)) for i in g.leg_type.indices)
+        book.outputs.append(Output("effort_limits", limit, ((0, 0),), (), g.leg_type.name, rows))

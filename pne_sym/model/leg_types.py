@@ -100,6 +100,7 @@ def structure_key(leg: Leg) -> Key:
             tuple(component == 0.0 for component in joint.offset),
             _present(joint.friction, joint.spring, joint.actuator),
             joint.has_stroke,
+            joint.has_effort,
         )
         for joint in leg.joints
     )

@@ -111,6 +111,11 @@ class Joint:
         return self.limits is not None and self.limits.displacement is not None
 
     @property
+    def has_effort(self) -> bool:
+        """Whether the force of its actuator has a limit."""
+        return self.actuated and self.limits is not None and self.limits.effort is not None
+
+    @property
     def turns(self) -> bool:
         """Whether the link turns against the link before it."""
         return self.kind.turns

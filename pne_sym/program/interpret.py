@@ -76,6 +76,11 @@ def inputs_read(program: Program, function: PublicFunction) -> set[str]:
     return read & {a.name for a in function.inputs}
 
 
+def judged(a: Array, *, unbounded: bool) -> Array:
+    """What tells whether a result is possible: infinite entries may be."""
+    return np.where(np.isposinf(a), 0.0, a) if unbounded else a
+
+
 class Interpreter:
     """The public functions of a model at prepared parameters."""
 
@@ -106,7 +111,7 @@ class Interpreter:
         for step in function.steps:
             state.do(step)
         outputs = [np.array(state.values[o.name]) for o in function.outputs]
-        status = state.status if function.unbounded else state.finished(outputs)
+        status = state.finished([judged(o, unbounded=function.unbounded) for o in outputs])
         for array in outputs:
             array[status != Status.OK] = np.nan
         return Answer(tuple(outputs), status)
@@ -150,7 +155,8 @@ class _State:
             vectors["q"] = self._closed()
         found = evaluate(self.model.program, step.function, self.model.prepared, vectors)
         for target, array in zip(step.targets, function.arrays, strict=True):
-            self.values[target.name] = found.outputs[array]
+            made = found.outputs[array]  # once, where it depends on the parameters alone
+            self.values[target.name] = np.broadcast_to(made, (self.states, *made.shape[1:]))
         for status in Status:
             if status is not Status.OK:
                 self.blame(found.status == status, status)
@@ -174,7 +180,7 @@ class _State:
         results = operation(operands, step.numbers)
         for target, result in zip(step.targets, results, strict=True):
             self.values[target.name] = result
-            lost = ~finite(result)
+            lost = ~finite(judged(result, unbounded=operation.unbounded))
             self.blame(known & lost, operation.status)
 
     def finished(self, outputs: Sequence[Array]) -> NDArray[np.int_]:

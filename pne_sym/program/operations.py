@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pne_sym.program import linear
+from pne_sym.program import distribution, linear
 from pne_sym.program.evaluate import Status
 
 Array = NDArray[np.float64]
@@ -30,11 +30,13 @@ class Operation:
         compute: results, in order, of operands over states; its docstring says what it means.
         status: of a state in which a result is not finite although all operands are; OK where that
             is meant.
+        unbounded: results may be infinite: what is not finite is NaN.
     """
 
     name: str
     compute: Callable[..., tuple[Array, ...]]
     status: Status = Status.INVALID
+    unbounded: bool = False
 
     def __call__(self, operands: Sequence[Array], numbers: tuple[int, ...]) -> tuple[Array, ...]:
         """Results at operands over states."""
@@ -56,11 +58,13 @@ OPERATIONS: dict[str, Operation] = {}
 _Compute = Callable[..., tuple[Array, ...]]
 
 
-def _operation(status: Status = Status.INVALID) -> Callable[[_Compute], _Compute]:
+def _operation(
+    status: Status = Status.INVALID, *, unbounded: bool = False
+) -> Callable[[_Compute], _Compute]:
     """Enter a function into the table under its own name."""
 
     def enter(compute: _Compute) -> _Compute:
-        OPERATIONS[compute.__name__] = Operation(compute.__name__, compute, status)
+        OPERATIONS[compute.__name__] = Operation(compute.__name__, compute, status, unbounded)
         return compute
 
     return enter
@@ -246,12 +250,25 @@ def wrap_turns(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
     return (result,)
 
 
-@_operation(Status.OK)
+@_operation(Status.OK, unbounded=True)
 def unlimited(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
     """a, infinite at the numbered entries."""
     result = np.array(a)
     result[:, list(numbers)] += np.inf
     return (result,)
+
+
+@_operation()
+def least_entry(a: Array) -> tuple[Array, ...]:
+    """The least entry of a."""
+    return (np.min(a, axis=1),)
+
+
+@_operation()
+def spread(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """Of the first n entries of a the product, and the last over the first, 0 where that is 0."""
+    some = a[:, : numbers[0]]
+    return np.prod(some, axis=1), np.where(some[:, 0] == 0.0, 0.0, some[:, -1] / some[:, 0])
 
 
 @_operation()
@@ -332,6 +349,44 @@ def null_basis(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
     basis = np.array(np.swapaxes(vt[:, numbers[0] :], -1, -2))
     basis[bad] = np.nan
     return (basis,)
+
+
+# ---- bounds ------------------------------------------------------------------------------------
+
+
+@_operation(Status.UNREACHABLE)
+def nearest_within(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, ...]:
+    """Of the a + b y, y any, with entries from c to d the one nearest to a; UNREACHABLE if none.
+
+    What is nearest is told by b, the products of the normals of the bounds.
+    """
+    found = np.full_like(a, np.nan)
+    for k in np.flatnonzero(finite(a) & finite(b) & finite(c) & finite(d)):
+        start = np.column_stack((a[k], np.zeros(a.shape[1])))
+        nearest = distribution.nearest(start, b[k], c[k], d[k])
+        found[k] = np.nan if nearest is None else nearest[:, 0]
+    return (found,)
+
+
+@_operation(Status.UNREACHABLE, unbounded=True)
+def factors_within(a: Array, b: Array, c: Array) -> tuple[Array, ...]:
+    """The least and the largest s >= 0 with |a + s b| <= c entry by entry; UNREACHABLE if none."""
+    ends = np.stack(((-c - a) / b, (c - a) / b))
+    never = np.where(np.abs(a) <= c, -np.inf, np.inf)
+    least = np.max(np.where(b == 0.0, never, np.min(ends, axis=0)), axis=1, initial=0.0)
+    largest = np.min(np.where(b == 0.0, np.inf, np.max(ends, axis=0)), axis=1)
+    some = finite(a) & finite(b) & finite(c) & (least <= largest) & (least < np.inf)
+    return np.where(some, least, np.nan), np.where(some, largest, np.nan)
+
+
+@_operation(Status.UNREACHABLE, unbounded=True)
+def factors_of_some(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, ...]:
+    """The least and the largest s >= 0 with |a + s b + c y| <= d, y any; UNREACHABLE if none."""
+    found = np.full((len(a), 2), np.nan)
+    for k in np.flatnonzero(finite(a) & finite(b) & finite(c) & finite(d)):
+        between = distribution.factors(a[k], b[k], c[k], d[k])
+        found[k] = np.nan if between is None else between
+    return found[:, 0], found[:, 1]
 
 
 def finite(a: Array) -> NDArray[np.bool_]:

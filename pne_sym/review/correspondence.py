@@ -57,11 +57,11 @@ class Correspondence:
         """Of an argument of a function; None where all versions order it alike."""
         if argument in ("X", "X0"):
             return self.coordinates("X")
-        if argument in ("V", "A"):
+        if argument in ("V", "A", "direction"):
             return self.coordinates("V")
         if argument in ("q", "q0"):
             return self.joints("joints")
-        if argument in ("tau", "weights", "q_actuated"):
+        if argument in ("tau", "weights", "q_actuated", "tau_min", "tau_max", "reference"):
             return self.joints("actuators")
         return None
 

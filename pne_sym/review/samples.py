@@ -51,6 +51,8 @@ def _near(path: str, value: Array, of: tuple[bool, float], rng: np.random.Genera
     return np.asarray(moved, dtype=np.float64)
 
 
+_BOUND = 1e4
+"""Size of the bounds of actuator forces: so wide that there are forces within, or nearly."""
 SHARED = ("weights", "length", "nearest")
 """Arguments that are the same for all states."""
 
@@ -89,7 +91,14 @@ def random_values(
         "step": drawn("NV", 0.3),
         "base": _bases(pose, count, rng),
     }
-    return found | _orientations(pose, count, rng)
+    found |= _orientations(pose, count, rng)
+    return found | {
+        "direction": drawn("NV"),
+        "wrench_direction": drawn("NW"),
+        "tau_min": -_BOUND * rng.uniform(0.5, 1.0, (count, sizes["NU"])),
+        "tau_max": _BOUND * rng.uniform(0.5, 1.0, (count, sizes["NU"])),
+        "reference": drawn("NU", 2.0 * _BOUND),
+    }
 
 
 def _bases(pose: list[str], count: int, rng: np.random.Generator) -> Array:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tests.backends.c_library import Array, CLibrary
+from tests.bounds import bounded
 from tests.infinite import finite_parts
 from tests.targets.modules import SWAYING
 
@@ -43,6 +44,7 @@ def vectors(
         "s": rng.uniform(-1.0, 2.0, count),
         "base": np.tile(SWAYING, (count, 1)),
         "rpy": rng.uniform(-3.0, 3.0, (count, 3)),
+        **bounded(module, count),
         **_pose(module, near),
     }
 

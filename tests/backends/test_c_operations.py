@@ -38,7 +38,7 @@ def function(operation: str, shapes: tuple[Shape, ...], numbers: tuple[int, ...]
         (step,),
         "",
         needs_model=False,
-        unbounded=OPERATIONS[operation].status is Status.OK,
+        unbounded=OPERATIONS[operation].unbounded,
     )
 
 

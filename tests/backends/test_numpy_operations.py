@@ -47,6 +47,11 @@ CASES: dict[str, list[tuple[tuple[Shape, ...], tuple[int, ...]]]] = {
     "wrap_turns": [(((4,),), (0, 3))],
     "unlimited": [(((4,),), (0, 3))],
     "not_negative": [(((4,),), ()), (((1,),), ())],
+    "least_entry": [(((4,),), ()), (((1,),), ())],
+    "spread": [(((4,),), (3,)), (((2,),), (1,))],
+    "factors_within": [(((4,), (4,), (4,)), ()), (((1,), (1,), (1,)), ())],
+    "factors_of_some": [(((5,), (5,), (5, 5), (5,)), ()), (((1,), (1,), (1, 1), (1,)), ())],
+    "nearest_within": [(((6,), (6, 6), (6,), (6,)), ()), (((1,), (1, 1), (1,), (1,)), ())],
     "solve": [(((n, n), (n,)), ()) for n in (1, 2, 6)],
     "saddle": [(((4, 4), (4, 2)), ())],
     "least_norm": [(((3, 5), (3,)), ()), (((3, 3), (3,)), ())],
@@ -85,7 +90,27 @@ def operands(shapes: tuple[Shape, ...], states: int, operation: str) -> list[Any
     if operation in ("solve", "least_norm") and shapes[0][0] > 1:
         found[0][1, 1] = -3.0 * found[0][1, 0]
         found[0][1, 1, -1] *= 1.0 + 1e-13  # nearly: below the threshold of pivots
+    if operation in ("factors_within", "factors_of_some", "nearest_within"):
+        found = within_bounds(found, rng)
     found[0][2] = np.nan
+    return found
+
+
+def within_bounds(found: list[Any], rng: np.random.Generator) -> list[Any]:
+    """Gram matrices of normals; bounds that leave something, but for those of the second state."""
+    n = found[0].shape[1]
+    if found[1].ndim == 2:
+        found[1][1] = 0.0
+        found[-1] = np.abs(found[-1]) + 1.0
+        found[0][1], found[-1][1] = 3.0, 2.0
+    if len(found) == 4:
+        normals = rng.normal(size=(len(found[0]), n, max(n // 3, 1)))
+        normals[1, 0] = 0.0
+        found[2 if found[1].ndim == 2 else 1] = normals @ np.swapaxes(normals, 1, 2)
+    if found[1].ndim == 3:
+        found[2], found[3] = -1.5 - np.abs(found[2]), 1.5 + np.abs(found[3])
+        found[2][1] = found[0][1] + 0.5
+        found[3][1] = found[0][1] + 1.5
     return found
 
 

@@ -13,6 +13,7 @@ from pne_sym.program.interpret import Interpreter, PoseLayout
 from pne_sym.program.public import PublicFunction
 from tests import models
 from tests.backends.c_library import Array
+from tests.bounds import bounded
 from tests.infinite import finite_parts
 from tests.sampling import entries
 
@@ -57,6 +58,7 @@ def states(manipulator: Manipulator, m: Any) -> dict[str, Array]:
         "wrench": rng.uniform(-5.0, 5.0, (STATES, m.NW)),
         "weights": np.tile(rng.uniform(0.5, 2.0, m.NU), (STATES, 1)),
         "q_actuated": q[:, joints],
+        **bounded(m, STATES),
         **guess,
     }
 

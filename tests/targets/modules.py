@@ -12,6 +12,7 @@ import numpy as np
 from pne_sym.backends.xp import XpBackend
 from pne_sym.model.manipulator import Manipulator
 from tests import models
+from tests.bounds import bounded
 
 STATES = 3
 SWAYING = np.array([0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0, *np.linspace(-1.0, 2.0, 9)])
@@ -19,6 +20,9 @@ SWAYING = np.array([0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0, *np.linspace(-
 _SOLVED = {
     "inverse_dynamics": "H",
     "leg_reactions": "H",
+    "force_distribution": "H",
+    "reachable_wrench": "H",
+    "reachable_acceleration": "H",
     "forward_dynamics": "M",
     "complete_acceleration": "M",
     "forward_kinematics": "H",
@@ -61,6 +65,7 @@ def vectors(m: Any, states: int = STATES) -> dict[str, Any]:
         "s": rng.uniform(0.0, 1.0, states),
         "rpy": rng.uniform(-1.0, 1.0, (states, 3)),
         "base": np.tile(SWAYING, (states, 1)),
+        **bounded(m, states),
     }
     if hasattr(m, "rotation"):
         found["R"] = m.rotation(X)

@@ -16,6 +16,7 @@ from pne_sym.model.manipulator import Manipulator
 from tests import models
 from tests.infinite import finite_parts
 from tests.targets.modules import call, condition, functions, vectors, xp_module
+from tests.whole.test_bounds import limited
 from tests.whole.test_coupling import coupled
 from tests.whole.test_joint_forces import dressed
 from tests.whole.test_moving_base import carried
@@ -36,6 +37,13 @@ def test_with_all_that_a_joint_can_have() -> None:
     assert_alike(np, dressed("planar_3rpr"))
     assert_alike(np, carried("tripod_3rps"))
     assert_alike(np, coupled("planar_3rpr"))
+
+
+@pytest.mark.parametrize("space", [np, array_api_strict, torch, jax.numpy])
+def test_within_limits_of_effort(space: Any) -> None:
+    """With constraints, with redundant actuators and limits at some of them, with both."""
+    for name, every in (("tripod_3rps", 1), ("planar_4rpr", 2), ("quadrupod", 1)):
+        assert_alike(space, limited(name, every, 5e3))
 
 
 def assert_alike(space: Any, manipulator: Manipulator) -> None:

@@ -47,7 +47,10 @@ ROTATIONS = {
     "R": {4: "0.8, -0.6, 0.6, 0.8", 9: "2./3, -1./3, 2./3, 2./3, 2./3, -1./3, -1./3, 2./3, 2./3"},
     "rpy": {3: "0.1, 0.2, 0.3"},
 }
-ITERATED = ("forward_kinematics", "project", "condition", "condition_constrained")
+ITERATED = (
+    *("forward_kinematics", "project", "condition", "condition_constrained", "manipulability"),
+    *("singularity_distance", "reachable_wrench", "reachable_acceleration", "force_distribution"),
+)
 # Nor are the margins of joints analysed so: they are infinite, on purpose, where there is no limit.
 NOT_IN_NUMBERS = (*ITERATED, "joint_margins")
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from tests.bounds import bounded
 from tests.oracle.coordinates import actuated_indices, displaced
 from tests.whole.cases import Array, Case, guess_of
 
@@ -45,6 +46,7 @@ def states(c: Case, lead: tuple[int, ...], seed: int = 0) -> Vectors:
         "s": rng.uniform(0.0, 1.0, count),
         "q0": np.array(guess_of(m, q).get("q0", q)),
         "rpy": rng.uniform(-1.0, 1.0, (count, 3)),
+        **bounded(m, count),
     }
     if hasattr(m, "rotation"):
         found["R"] = m.rotation(X)

@@ -17,6 +17,7 @@ from tests.whole.cases import Array, case
 NAMES = ("fivebar_redundant", "hexapod_6x6r", "planar_3rpr", "spherical_3ups", "tripod_3rps")
 """Redundant drives, iteration, a plane, a fixed centre, constraints."""
 REQUIRED = {"X", "V", "A", "tau", "q_actuated", "X0", "X1", "step", "s", "t", "R", "rpy", "p"}
+REQUIRED |= {"direction", "wrench_direction", "tau_min", "tau_max"}
 
 
 def calls(name: str) -> list[tuple[str, str]]:

@@ -39,7 +39,7 @@ EXPRESSIONS = {
     "singular_values": "{f}decomposed({0})",
     "impossible": "NaN({n}, n)",
     "split": "deal({0}(1:{n}, :, :), {0}({n} + 1:end, :, :))",
-    **{name: f"{{f}}{name}({{0}}, {{n}})" for name in ("resolve", "null_basis")},
+    **{name: f"{{f}}{name}({{0}}, {{n}})" for name in ("resolve", "null_basis", "spread")},
 }
 """Operations that are more than a call of a function in templates/octave."""
 
@@ -48,7 +48,7 @@ class Public(StepText):
     """Writes steps as statements, and what users call as facts for the template."""
 
     apply = "{targets} = {value};"
-    several = "[{}]"
+    several, known, alone = "[{}]", "0 ./ ~isnan({})", "n"
     first = 1
 
     def __init__(self, bundle: Bundle) -> None:

@@ -139,6 +139,7 @@ FUNCTIONS = {
     "dissipation": "power that friction takes",
     "motors": "rates of the motors, and the inverses of their ratios",
     "joint_margins": "distances of the joints from their limits",
+    "effort_limits": "largest forces of the actuators",
     "condition": "H and the least pivots, for the conditioning",
 }
 SPACES = {
