@@ -11,7 +11,7 @@ import numpy as np
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.numpy_functions import FunctionText, Places
-from pne_sym.backends.numpy_public import OPERATIONS, public_text, steps_text
+from pne_sym.backends.numpy_public import OPERATIONS, Orders, public_text, steps_text
 from pne_sym.backends.numpy_support import needed
 from pne_sym.backends.python_public import ParametersView, exported, parameters_view
 from pne_sym.backends.python_text import PythonText
@@ -40,6 +40,7 @@ class ModuleView:
     prepare: str
     support: str
     functions: tuple[str, ...]
+    orders: tuple[str, ...]
     steps: tuple[str, ...]
     public: tuple[str, ...]
 
@@ -62,11 +63,12 @@ class NumpyBackend:
     def view(self, bundle: Bundle) -> ModuleView:
         """What the template prints."""
         program, c = bundle.program, bundle.coordinates
-        places = Places()
+        places, orders = Places(), Orders(bundle)
         functions = _functions(bundle, places)
         texts = tuple(f.text() for f in functions)
-        steps = tuple(steps_text(program, f) for f in program.public)
+        steps = tuple(steps_text(program, f, orders) for f in program.public)
         public = tuple(public_text(program, f) for f in program.public if f.is_exported)
+        texts += orders.functions()
         return ModuleView(
             describe(bundle),
             exported(bundle),
@@ -79,8 +81,9 @@ class NumpyBackend:
             tuple(_closure(bundle, closure) for closure in program.closures),
             _branches(bundle),
             _prepare(bundle, functions),
-            needed(support(), (*texts, *steps, *public)),
+            needed(support(), (*texts, *orders.tables, *steps, *public)),
             texts,
+            tuple(orders.tables),
             steps,
             public,
         )
