@@ -74,6 +74,7 @@ robots: $(VENV)/test.stamp ## Generate the robots of docs/robots.md and test the
 bench: $(VENV)/core.stamp ## Measure the generated code and the generator
 	$(BIN)/python bench/c_speed.py
 	$(BIN)/python bench/generation.py
+	$(BIN)/python bench/numpy_speed.py
 
 .PHONY: generate
 generate: $(VENV)/core.stamp ## Write generated/

@@ -1,97 +1,18 @@
-"""Small systems of linear equations in C, eliminated straight through in the order of home.
-
-Near home the rows of a system always come in the same order: known beforehand, it needs no search
-for pivots and no exchange.  The order, and sizes of rows, are those of the parameters of the
-specification; what they do not suit is noticed by the pivots, and is solved with a choice of rows.
-"""
+"""Small systems of linear equations in C, eliminated straight through in the order of home."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
-
-from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_text import Routine, in_pairs, indented, listing, statement
-from pne_sym.program.evaluate import Status, prepare
-from pne_sym.program.interpret import Interpreter, PoseLayout
-from pne_sym.program.public import Apply, Argument, PublicFunction
-
-LARGEST = 6
-"""Equations of a system that is written out; larger ones would be long texts."""
-GROWTH = 10
-"""Multiples of the pivot's row that are subtracted at most, rows made of equal size."""
-SMALLEST = 1e-3
-"""Pivots are larger, in rows made of size one: far from what counts as singular in every type."""
-_CLEARLY = 2  # a row further down is better by this factor, as in templates/c/linear.c.jinja
-_FOURS = 16  # no more powers of 4 between rows and one: products of entries stay far from underflow
-
-Array = NDArray[np.float64]
+from pne_sym.backends.orders import GROWTH, SMALLEST, Order
 
 
-@dataclass(frozen=True)
-class Order:
-    """How a system is eliminated.
-
-    Attributes:
-        rows: in the order in which they are pivots.
-        sizes: logarithm to the base 4 of the size of these rows, rounded.
-    """
-
-    rows: tuple[int, ...]
-    sizes: tuple[int, ...]
-
-    def tables(self, name: str) -> list[str]:
-        """Declarations of the rows `order_NAME` and the sizes `sizes_NAME`."""
-        rows, sizes = (", ".join(map(str, v)) for v in (self.rows, (4.0**s for s in self.sizes)))
-        return [
-            *listing(f"static const size_t order_{name}[] = {{", [rows], "};"),
-            *listing(f"static const real sizes_{name}[] = {{", [sizes], "};"),
-        ]
-
-
-def order_at_home(bundle: Bundle, function: PublicFunction, solve: Apply) -> Order | None:
-    """The order for a system of a function; None where it is large, or singular at home."""
-    matrix = solve.operands[0]
-    if matrix.shape[0] > LARGEST:
-        return None
-    before = function.steps[: function.steps.index(solve)]
-    result = (Argument(matrix, (), ""),)
-    part = PublicFunction("part", "", function.inputs, result, before, "")
-    c, program = bundle.coordinates, bundle.program
-    model = Interpreter(
-        program,
-        [part],
-        prepare(program, bundle.derivation.parameters.values()),
-        np.array(c.home[1]),
-        PoseLayout(c.position, c.has_quaternion),
-    )
-    given = {a.name: np.zeros((1, *a.value.shape)) for a in part.required} | {
-        "X": np.array([c.home[0]])
-    }
-    answer = model.call("part", **given)
-    return _order(answer.outputs[0][0]) if answer.status[0] == Status.OK else None
-
-
-def _order(matrix: Array) -> Order | None:
-    """Elimination with a choice of rows of equal size."""
-    most = np.max(np.abs(matrix), axis=1)
-    if not most.all():
-        return None
-    a, rows = matrix / most[:, None], list(range(len(matrix)))
-    for p in range(len(a)):
-        column = np.abs(a[p:, p])
-        best = p + int(np.argmax(column))
-        if column[best - p] > _CLEARLY * column[0]:
-            a[[p, best]] = a[[best, p]]
-            rows[p], rows[best] = rows[best], rows[p]
-        if not abs(a[p, p]) > SMALLEST:
-            return None
-        a[p + 1 :] -= np.outer(a[p + 1 :, p] / a[p, p], a[p])
-    sizes = tuple(round(math.log(float(most[r]), 4)) for r in rows)
-    return Order(tuple(rows), sizes) if max(map(abs, sizes)) <= _FOURS else None
+def tables(order: Order, name: str) -> list[str]:
+    """Declarations of the rows `order_NAME` and the sizes `sizes_NAME`."""
+    rows, sizes = (", ".join(map(str, v)) for v in (order.rows, (4.0**s for s in order.sizes)))
+    return [
+        *listing(f"static const size_t order_{name}[] = {{", [rows], "};"),
+        *listing(f"static const real sizes_{name}[] = {{", [sizes], "};"),
+    ]
 
 
 def elimination(n: int) -> Routine:

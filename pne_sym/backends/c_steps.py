@@ -11,8 +11,9 @@ from collections.abc import Mapping, Sequence
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_sizes import Sizes, times
-from pne_sym.backends.c_solve import elimination, order_at_home
+from pne_sym.backends.c_solve import elimination, tables
 from pne_sym.backends.c_text import WIDTH, Routine, indented, listing, statement
+from pne_sym.backends.orders import order_at_home
 from pne_sym.backends.scalar import wrap
 from pne_sym.backends.templating import render
 from pne_sym.program import interpret
@@ -377,7 +378,7 @@ class Steps:
             self.eliminations[len(order.rows)] = straight
             self.before.append("\n".join(straight.definition()))
         solved = step.targets[0].name
-        self.tables += order.tables(solved)
+        self.tables += tables(order, solved)
         names = {v: str(fields[v]) for v in "abx"}
         names |= {"order": f"order_{solved}", "sizes": f"sizes_{solved}"}
         stride = f"stride_of({fields['m']}, {self.w})" if filled else str(fields["m"])

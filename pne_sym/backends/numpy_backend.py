@@ -13,6 +13,7 @@ from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.numpy_functions import FunctionText, Places
 from pne_sym.backends.numpy_public import (
     OPERATIONS,
+    Orders,
     judged_functions,
     public_text,
     steps_text,
@@ -45,6 +46,7 @@ class ModuleView:
     prepare: str
     support: str
     functions: tuple[str, ...]
+    orders: tuple[str, ...]
     steps: tuple[str, ...]
     public: tuple[str, ...]
 
@@ -67,11 +69,12 @@ class NumpyBackend:
     def view(self, bundle: Bundle) -> ModuleView:
         """What the template prints."""
         program, c = bundle.program, bundle.coordinates
-        places = Places()
+        places, orders = Places(), Orders(bundle)
         functions = _functions(bundle, places)
         texts = tuple(f.text() for f in functions)
-        steps = tuple(steps_text(program, f) for f in program.public)
+        steps = tuple(steps_text(program, f, orders) for f in program.public)
         public = tuple(public_text(program, f) for f in program.public if f.is_exported)
+        texts += orders.functions()
         return ModuleView(
             describe(bundle),
             exported(bundle),
@@ -84,8 +87,9 @@ class NumpyBackend:
             tuple(_closure(bundle, closure) for closure in program.closures),
             _branches(bundle),
             _prepare(bundle, functions),
-            needed(support(), (*texts, *steps, *public)),
+            needed(support(), (*texts, *orders.tables, *steps, *public)),
             texts,
+            tuple(orders.tables),
             steps,
             public,
         )

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import textwrap
 
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.numpy_solve import elimination, table
+from pne_sym.backends.orders import order_at_home
 from pne_sym.backends.python_public import definition, rows
 from pne_sym.backends.python_text import WIDTH, unpacked
 from pne_sym.backends.scalar import wrap
 from pne_sym.program.ir import Program
-from pne_sym.program.public import Apply, PublicFunction, Run, Step
+from pne_sym.program.public import Apply, PublicFunction, Run, Search, Step
 
 _EXPRESSIONS = {
     "add": "{0} + {1}",
@@ -18,7 +21,7 @@ _EXPRESSIONS = {
     "multiply": "{0} * {1}",
     "entry": "{0}[{n}]",
     "impossible": "_impossible({n}, m.states)",
-    "times": 'np.einsum("ijs,js->is", {0}, {1})',
+    "times": "_times({0}, {1})",
     "product": 'np.einsum("iks,kjs->ijs", {0}, {1})',
     "transposed": "np.swapaxes({0}, 0, 1)",
     "half_form": '0.5 * np.einsum("is,is->s", {0}, np.einsum("ijs,js->is", {1}, {0}))',
@@ -64,18 +67,57 @@ _EXPRESSIONS = {
 OPERATIONS = frozenset((*_EXPRESSIONS, "search"))
 
 
-def steps_text(program: Program, function: PublicFunction) -> str:
+class Orders:
+    """The orders in which small systems are eliminated at home, each once.
+
+    Args:
+        bundle: of the model.
+    """
+
+    def __init__(self, bundle: Bundle) -> None:
+        self.bundle = bundle
+        self.tables: list[str] = []
+        self.sizes = set[int]()
+
+    def named(self, function: PublicFunction, step: Apply) -> str:
+        """The order of a system of a function, as code; empty where there is none."""
+        order = order_at_home(self.bundle, function, step)
+        if order is None:
+            return ""
+        self.sizes.add(len(order.rows))
+        text = table(order)
+        if text not in self.tables:
+            self.tables.append(text)
+        return f"_ORDERS[{self.tables.index(text)}]"
+
+    def functions(self) -> tuple[str, ...]:
+        """The functions that solve systems, by size."""
+        return tuple(elimination(n) for n in sorted(self.sizes))
+
+
+def steps_text(program: Program, function: PublicFunction, orders: Orders) -> str:
     """The steps as a function of a mode and all inputs, states last, which returns a tuple."""
     judged = set() if function.gives_status else judged_functions(program)
-    lines = [line for step in function.steps for line in _step(program, step, judged)]
-    runs = [
-        isinstance(s, Run) and "q" in program.functions[s.function].inputs for s in function.steps
-    ]
-    if any(runs):
+    lines = []
+    for step in function.steps:
+        if isinstance(step, Apply):
+            solves = step.operation == "solve"
+            order = orders.named(function, step) if solves else ""
+            targets = ", ".join(target.name for target in step.targets)
+            lines += _wrapped(f"{targets} = {applied(step, order)}")
+        else:
+            lines += _step(program, step, judged)
+    if _closes(program, function):
         lines.insert(0, "q = _closed(m, X, q0)")
     outputs = ", ".join(output.value.name for output in function.outputs)
     head = f"def _steps_{function.name}({', '.join(('m', *(a.name for a in function.inputs)))}):"
     return "\n".join((head, textwrap.indent("\n".join([*lines, f"return ({outputs},)"]), "    ")))
+
+
+def _closes(program: Program, function: PublicFunction) -> bool:
+    """Whether displacements are iterated first."""
+    runs = (s for s in function.steps if isinstance(s, Run))
+    return any("q" in program.functions[s.function].inputs for s in runs)
 
 
 def judged_functions(program: Program) -> set[str]:
@@ -83,7 +125,7 @@ def judged_functions(program: Program) -> set[str]:
     return {n for f in program.public if f.gives_status for n in f.functions}
 
 
-def _step(program: Program, step: Step, judged: set[str]) -> list[str]:
+def _step(program: Program, step: Run | Search, judged: set[str]) -> list[str]:
     if isinstance(step, Run):
         names = [target.name for target in step.targets]
         function = program.functions[step.function]
@@ -93,8 +135,6 @@ def _step(program: Program, step: Step, judged: set[str]) -> list[str]:
         run = f"_in_one({run})" if step.function in judged else run
         given = ", ".join((run, arrays, *function.inputs))
         return unpacked(names, f"m.run({given})", WIDTH - 4)
-    if isinstance(step, Apply):
-        return _wrapped(f"{', '.join(target.name for target in step.targets)} = {applied(step)}")
     inputs_of = {f.name: [a.name for a in f.inputs if a.name != "X"] for f in program.public}
     given, guess = (f"({''.join(f'{n}, ' for n in inputs_of[n])})".replace(", )", ",)")
                     for n in (step.residual, step.slope))  # fmt: skip
@@ -107,9 +147,11 @@ def _wrapped(line: str) -> list[str]:
     return wrap(line, WIDTH - 4, "    ")
 
 
-def applied(step: Apply) -> str:
-    """An operation at its operands."""
+def applied(step: Apply, order: str = "") -> str:
+    """An operation at its operands; for a system of equations, in an order where there is one."""
     operands = [operand.name for operand in step.operands]
+    if order:
+        return f"_straight(m, {', '.join(operands)}, {order})"
     if step.operation == "extend" and step.operands[0].shape == step.targets[0].shape:
         return operands[0]
     return _EXPRESSIONS[step.operation].format(
@@ -127,6 +169,29 @@ def _places(numbers: tuple[int, ...]) -> str:
     return str(list(numbers))
 
 
+_PLAIN = {"same", "add", "subtract", "negative", "times", "solve"}
+"""Operations that single states do in lists of floats, without arrays."""
+
+
+def _is_plain(program: Program, function: PublicFunction) -> bool:
+    """Whether a single state needs no arrays."""
+    return (
+        all(isinstance(s, Run) or _is_plain_step(s) for s in function.steps)
+        and not _closes(program, function)
+        and all(o.dimensions for o in function.outputs)
+        and not (function.gives_status or function.unbounded)
+    )
+
+
+def _is_plain_step(step: Step) -> bool:
+    if not isinstance(step, Apply):
+        return False
+    if step.operation == "extend":
+        return step.operands[0].shape == step.targets[0].shape
+    vectors = all(len(o.shape) == 1 for o in step.operands)
+    return step.operation in _PLAIN and (vectors or step.operation in ("times", "solve"))
+
+
 def public_text(program: Program, function: PublicFunction) -> str:
     """The function that users call."""
     p = "p" if function.needs_model else "None"
@@ -134,4 +199,7 @@ def public_text(program: Program, function: PublicFunction) -> str:
     call += [f"    {row}" for row in rows(program, function)]
     call += ["    mode=_Judged,"] * function.gives_status
     call += ["    unbounded=True,"] * function.unbounded
+    if _is_plain(program, function):
+        shapes = ", ".join(f"({', '.join(o.dimensions)},)" for o in function.outputs)
+        call.append(f"    plain=({shapes},),")
     return definition(function, [*call, ")"])

@@ -9,7 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from pne_sym.backends.c_backend import CBackend
-from pne_sym.backends.c_solve import Order, elimination, order_at_home
+from pne_sym.backends.c_solve import elimination, tables
+from pne_sym.backends.orders import Order, order_at_home
 from pne_sym.program.public import Apply
 from tests import models
 from tests.backends.c_library import WARNINGS, find_compiler, run
@@ -33,7 +34,7 @@ def solve(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     text = [
         *routine.definition(),
         f"void solve({declared});",
-        *ORDER.tables("x"),
+        *tables(ORDER, "x"),
         f"void solve({declared})",
         "{",
         "    eliminate_4(1, 4, order_x, sizes_x, a, b, x, unsure, total);",
